@@ -1,8 +1,9 @@
-/* A simulated arm with the joints of a Gen3, and a force sensor at its tip that feels somebody push and let go.
+/* A simulated arm, and a force sensor at its tip that feels somebody push and let go.
  *
- *   cc -O2 -o arm_and_sensor arm_and_sensor.c -lm && ./arm_and_sensor 127.0.0.1 47201 47202 [SECONDS]
+ *   cc -O2 -o arm_and_sensor arm_and_sensor.c -lm && ./arm_and_sensor 127.0.0.1 47201 47202 [SECONDS [ANGLES]]
  *
- * The first port is the arm's, the second the sensor's. The joints follow their commands with a lag of 10 Hz and brake
+ * The first port is the arm's, the second the sensor's. ANGLES are where the joints begin, rad: one for each joint. For
+ * an arm of six joints compile with -DNIMA_JOINTS=6. The joints follow their commands with a lag of 10 Hz and brake
  * when NIMA Console cannot be heard. At the end, or after Ctrl-C, it prints what it has counted as lines of JSON. */
 #define _POSIX_C_SOURCE 200809L
 #include "nima_device.h"
@@ -34,12 +35,15 @@ static void tell(const char *name, const nima_device *device) {
 
 int main(int count, char **words) {
     /* With the instrument in its trocar on the rig of docs/external-device.md. */
-    double joint_rad[NIMA_JOINTS] = {2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92};
+    static const double gen3_rad[7] = {2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92};
+    double joint_rad[NIMA_JOINTS];
     const double share = 1.0 - exp(-6.283 * 10.0 * 1e-3);
     nima_device arm, sensor;
-    if (count < 4 || nima_device_open(&arm, NIMA_ARM, words[1], (uint16_t)atoi(words[2]), "simulated arm", "A-1") ||
+    for (int joint = 0; joint < NIMA_JOINTS; joint++)
+        joint_rad[joint] = count == 5 + NIMA_JOINTS ? atof(words[5 + joint]) : gen3_rad[joint];
+    if (count < 4 || (count > 5 && count != 5 + NIMA_JOINTS) || nima_device_open(&arm, NIMA_ARM, words[1], (uint16_t)atoi(words[2]), "simulated arm", "A-1") ||
         nima_device_open(&sensor, NIMA_SENSOR, words[1], (uint16_t)atoi(words[3]), "pushed sensor", "S-1")) {
-        fprintf(stderr, "usage: %s ADDRESS ARM-PORT SENSOR-PORT [SECONDS]\n", words[0]);
+        fprintf(stderr, "usage: %s ADDRESS ARM-PORT SENSOR-PORT [SECONDS [%d ANGLES]]\n", words[0], NIMA_JOINTS);
         return 2;
     }
     const double seconds = count > 4 ? atof(words[4]) : INFINITY;

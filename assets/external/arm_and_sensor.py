@@ -1,8 +1,8 @@
-"""A simulated arm with the joints of a Gen3, and a force sensor at its tip that feels somebody push and let go.
+"""A simulated arm, and a force sensor at its tip that feels somebody push and let go.
 
-    python3 arm_and_sensor.py 127.0.0.1 47201 47202 [SECONDS]
+    python3 arm_and_sensor.py 127.0.0.1 47201 47202 [SECONDS [ANGLES]]
 
-The first port is the arm's, the second the sensor's. The joints follow their commands with a lag of 10 Hz and hold when
+The first port is the arm's, the second the sensor's. ANGLES are where the joints begin, rad: one for each joint. The joints follow their commands with a lag of 10 Hz and hold when
 NIMA Console cannot be heard. At the end, or after Ctrl-C, it prints what it has counted as lines of JSON.
 """
 
@@ -18,11 +18,12 @@ PERIOD_S = 1e-3
 START_RAD = (2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92)
 
 
-def main(address, arm_port, sensor_port, seconds="inf"):
+def main(address, arm_port, sensor_port, seconds="inf", *angles):
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    the_arm = Device(ARM, address, int(arm_port), product="simulated arm", serial="A-1")
+    start_rad = [float(angle) for angle in angles] or START_RAD
+    the_arm = Device(ARM, address, int(arm_port), product="simulated arm", serial="A-1", joints=len(start_rad))
     the_sensor = Device(SENSOR, address, int(sensor_port), product="pushed sensor", serial="S-1")
-    joint_rad, command, last_s = list(START_RAD), None, 0.0
+    joint_rad, command, last_s = list(start_rad), None, 0.0
     try:
         for t_s in every(PERIOD_S, float(seconds)):
             step_s, last_s = max(t_s - last_s, 1e-6), t_s
@@ -45,5 +46,5 @@ def main(address, arm_port, sensor_port, seconds="inf"):
 
 if __name__ == "__main__":
     if len(sys.argv) < 4:
-        sys.exit(f"usage: {sys.argv[0]} ADDRESS ARM-PORT SENSOR-PORT [SECONDS]")
+        sys.exit(f"usage: {sys.argv[0]} ADDRESS ARM-PORT SENSOR-PORT [SECONDS [ANGLES]]")
     main(*sys.argv[1:])

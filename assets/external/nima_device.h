@@ -40,7 +40,10 @@ enum {
     NIMA_HAS_ACCELERATION = 1 << 11, NIMA_HAS_ANGULAR_VELOCITY = 1 << 12 /* sensor */
 };
 
+/* For an arm of six joints: compile with -DNIMA_JOINTS=6. */
+#ifndef NIMA_JOINTS
 #define NIMA_JOINTS 7
+#endif
 #define NIMA_BYTES_MAX 260
 /* Without a command for so long the device is off. NIMA Console refuses a handle or an arm with more than its rig file
  * allows (20 ms). */

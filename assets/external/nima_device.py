@@ -18,6 +18,7 @@ from typing import NamedTuple
 HANDLE, ARM, SENSOR = 1, 2, 3
 ON, FAULT, THROTTLED, OVERRANGE, INVALID, RAW = (1 << bit for bit in range(6))
 HAS_ORIENTATION, HAS_VELOCITY, HAS_GRIPPER, HAS_ACCELERATION, HAS_ANGULAR_VELOCITY = (1 << bit for bit in range(8, 13))
+# Of an arm, unless `Device` gets another number.
 JOINTS = 7
 # Without a command for so long the device is off, s.
 WATCHDOG_S = 0.020
@@ -25,8 +26,8 @@ WATCHDOG_S = 0.020
 _VERSION = 1
 _HEADER = struct.Struct("<4sBBHIIQQIHHII")
 _NAMES = struct.Struct("<24s16s")
-_COMMANDS = {HANDLE: 4, ARM: JOINTS, SENSOR: 0}
-_READINGS = {HANDLE: 11, ARM: 3 * JOINTS, SENSOR: 13}
+_COMMANDS = {HANDLE: 4, SENSOR: 0}
+_READINGS = {HANDLE: 11, SENSOR: 13}
 _READS_MAX = 64
 
 
@@ -74,9 +75,10 @@ def handle(position_m, *, on, orientation_wxyz=None, velocity_m_s=None, gripper_
     return Reading(HANDLE, numbers, status, fault, buttons)
 
 
-def arm(joint_rad, *, on, joint_rad_s=(0.0,) * JOINTS, joint_nm=(0.0,) * JOINTS, fault=0):
+def arm(joint_rad, *, on, joint_rad_s=None, joint_nm=None, fault=0):
     """An arm's reading; angles go on beyond a turn. `on`: it follows the commanded angles."""
-    return Reading(ARM, (*joint_rad, *joint_rad_s, *joint_nm), (on and ON) | _bits(fault), fault)
+    still = (0.0,) * len(joint_rad)
+    return Reading(ARM, (*joint_rad, *(joint_rad_s or still), *(joint_nm or still)), (on and ON) | _bits(fault), fault)
 
 
 def sensor(
@@ -93,14 +95,15 @@ def sensor(
 
 
 class Device:
-    """One device. Counts what it `sent`, `taken` commands, and those that were `stale`, `damaged`, or taken back for `silences`."""
+    """One device; `joints`, 6 or 7, counts for an arm. Counts what it `sent`, `taken` commands, and those that were `stale`, `damaged`, or taken back for `silences`."""
 
-    def __init__(self, kind, address, port, *, product, serial):
+    def __init__(self, kind, address, port, *, product, serial, joints=JOINTS):
         self.kind = kind
         self._names = _NAMES.pack(product.encode("ascii"), serial.encode("ascii"))
-        self._reading = struct.Struct(f"<{_READINGS[kind]}d")
-        self._numbers = struct.Struct(f"<{_COMMANDS[kind]}d")
-        self._off = Command(False, False, (0.0,) * _COMMANDS[kind], -1.0)
+        commands = joints if kind == ARM else _COMMANDS[kind]
+        self._reading = struct.Struct(f"<{3 * joints if kind == ARM else _READINGS[kind]}d")
+        self._numbers = struct.Struct(f"<{commands}d")
+        self._off = Command(False, False, (0.0,) * commands, -1.0)
         self._command = self._off
         self._session = int.from_bytes(urandom(4), "little")
         self._sequence = self._peer_sequence = self._peer_us = self._heard_us = 0

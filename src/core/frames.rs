@@ -41,6 +41,7 @@ pub fn from_roll_pitch_yaw_deg(angles_deg: &Vector3<f64>) -> UnitQuaternion<f64>
 
 /// Returns roll, pitch and yaw (degrees) of a rotation: the inverse of [`from_roll_pitch_yaw_deg`].
 pub fn to_roll_pitch_yaw_deg(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
+    // nalgebra's Euler angles are also `Rz Ry Rx`, so both functions use the same convention.
     let (roll, pitch, yaw) = Rotation3::from(*rotation).euler_angles();
     Vector3::new(roll.to_degrees(), pitch.to_degrees(), yaw.to_degrees())
 }
@@ -62,6 +63,7 @@ pub fn to_roll_pitch_yaw_deg(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
 /// ```
 pub fn world_from_shaft(world_from_s1: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     let down = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+    // `None` only for opposite directions, where every axis is equally short.
     let tilt = UnitQuaternion::rotation_between(&-Vector3::z(), &(world_from_s1 * Vector3::z()));
     tilt.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)) * down
 }
@@ -99,6 +101,7 @@ pub struct WristSample {
     /// Orientation of the optical marker, from the arm's kinematics.
     pub world_from_m: Option<UnitQuaternion<f64>>,
     /// Orientation of the camera relative to the marker, from the tracker.
+    /// `None` also where the rig has no such sensor: zero would be a reading.
     pub m_from_c: Option<UnitQuaternion<f64>>,
     /// Insertion depth of the instrument through the trocar, m, from the arm's kinematics.
     pub insertion_m: Option<f64>,
@@ -121,6 +124,7 @@ impl WristSample {
 
     /// Returns the known part of the correspondence chain, `s1_from_c = s1_from_world * world_from_m * m_from_c`.
     pub fn s1_from_c(&self) -> Option<UnitQuaternion<f64>> {
+        // Any missing link of the chain makes the whole unknown.
         Some(self.world_from_s1?.inverse() * self.world_from_m? * self.m_from_c?)
     }
 

@@ -26,6 +26,7 @@ impl Limits {
     }
 
     /// Returns whether the value is within the limits; NaN is not.
+    /// An inclusive range is false for NaN, so no separate test is needed.
     pub fn contains(&self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
     }
@@ -45,20 +46,25 @@ impl fmt::Display for Limits {
     }
 }
 
+// A slower loop cannot follow a hand; no supported device delivers readings faster than 10 kHz.
 pub const RATE_HZ: Limits = Limits::new(20.0, 10_000.0, "Hz");
 
 /// Feedback gain that any command or file may choose.
+/// 1 is the force at the tip, felt unchanged; amplification is a separate, deliberate action.
 pub const GAIN: Limits = Limits::new(0.0, 1.0, "");
 /// Feedback gain after the operator's second, deliberate action.
+/// At 3, a force of the usual ceiling (4 N) reaches the 12 N of an omega.7.
 pub const GAIN_ABOVE_ONE: Limits = Limits::new(0.0, 3.0, "");
 
 /// Programmed one-way delay of the link. The loop's ring buffers have room for the maximum.
+/// Far above a delay with which a person can work (`SLIDER_DELAY_S`).
 pub const DELAY_S: Limits = Limits::new(0.0, 1.0, "s");
 /// Delay on the slider of the window. Rig files, studies and replays allow more; on the slider that would halve the
 /// resolution in the range where a person can still work (the paper uses 0.3 s).
 pub const SLIDER_DELAY_S: Limits = Limits::new(0.0, 0.5, "s");
 
 /// Speed of the hand below which no force is rendered.
+/// Larger bands would hide nearly every force of careful work.
 pub const DEAD_BAND_M_S: Limits = Limits::new(0.0, 0.1, "m/s");
 /// Dead band on the slider of the window, for a fine resolution around the paper's 1 mm/s.
 pub const SLIDER_DEAD_BAND_M_S: Limits = Limits::new(0.0, 0.01, "m/s");
@@ -73,15 +79,21 @@ pub const OMEGA7_FORCE_N: f64 = 12.0;
 pub const OMEGA7_GRIPPER_N: f64 = 8.0;
 
 /// Distance between the two lenses of an endoscope.
+/// Wider than an endoscope (a tube of 5 to 12 mm) permits, so that only wrong units are refused.
 pub const BASELINE_M: Limits = Limits::new(0.000_5, 0.05, "m");
+// Design choice: larger coefficients fold the image over itself.
 pub const DISTORTION: Limits = Limits::new(-2.0, 2.0, "");
 
 /// Travel of the tip per travel of the hand.
+/// Design choice: at 5, a tremor of 0.1 mm already moves the tip by 0.5 mm.
 pub const SCALE: Limits = Limits::new(0.01, 5.0, "");
 
 /// Samples in the window of the identification.
+/// Five rows in each half are the fewest for a fit; ten thousand are 10 s at 1 kHz.
 pub const WINDOW_SAMPLES: Limits = Limits::new(10.0, 10_000.0, "samples");
 /// Force that counts as no force, below which the identification pauses.
+/// Above 1 N the identification would rest during gentle contacts.
 pub const REST_N: Limits = Limits::new(0.0, 1.0, "N");
 /// Ridge parameter of the identification.
+/// 1e6 already shrinks every coefficient to zero.
 pub const RIDGE: Limits = Limits::new(0.0, 1e6, "");

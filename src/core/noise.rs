@@ -28,9 +28,11 @@ impl Noise {
 
     /// Returns a standard normal random number (Box-Muller, using both values).
     pub fn gaussian(&mut self) -> f64 {
+        // Box-Muller yields two numbers; the second one is kept for the next call.
         if let Some(spare) = self.spare.take() {
             return spare;
         }
+        // `1 - u` is in (0, 1], so the logarithm is finite.
         let radius = (-2.0 * libm::log(1.0 - self.rng.f64())).sqrt();
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * self.rng.f64());
         self.spare = Some(radius * sin);

@@ -50,6 +50,7 @@ impl Percentiles {
     /// Creates an empty histogram and allocates all of its memory.
     pub fn new() -> Self {
         // The constants are valid bounds; the fallback only avoids an error type in the signature.
+        // Three digits resolve 0.1 % of a duration in a histogram of fixed size.
         let histogram = Histogram::new_with_bounds(1, LONGEST_NS, 3)
             .or_else(|_| Histogram::new_with_max(LONGEST_NS, 2))
             .unwrap_or_else(|_| unreachable!("constant bounds"));
@@ -58,6 +59,7 @@ impl Percentiles {
 
     /// Records one duration, s. A negative or non-finite duration counts as zero.
     pub fn record(&mut self, seconds: f64) {
+        // The cast saturates: a duration beyond u64 counts as the longest.
         self.histogram.saturating_record((seconds * 1e9).max(0.0) as u64);
     }
 
@@ -67,6 +69,7 @@ impl Percentiles {
 
     /// Returns the quantiles of all durations so far, microseconds.
     pub fn quantiles(&self) -> Quantiles {
+        // From nanoseconds to microseconds.
         let at = |q| self.histogram.value_at_quantile(q) as f64 * 1e-3;
         Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: self.histogram.max() as f64 * 1e-3 }
     }
@@ -79,6 +82,7 @@ impl Percentiles {
     /// Returns the counts in bars that double in width, from 1 us to the largest duration; empty if nothing was
     /// recorded.
     pub fn histogram(&self) -> Vec<Bar> {
+        // From 1000 ns, doubling: quantities of scheduling differ by factors, not by steps.
         let bars = self.histogram.iter_log(1000, 2.0);
         let bars = bars.map(|bar| Bar {
             to_us: (bar.value_iterated_to() + 1) as f64 * 1e-3,
@@ -92,6 +96,7 @@ impl Percentiles {
         let mut bars = vec![0; buckets.max(1)];
         for value in self.histogram.iter_recorded() {
             let bar = (value.value_iterated_to() as f64 * 1e-3 / step_us) as usize;
+            // Everything beyond the last bar is counted in it.
             bars[bar.min(buckets.max(1) - 1)] += value.count_at_value();
         }
         bars

@@ -33,6 +33,7 @@ mod unix {
 
     use crate::os::user_id;
 
+    // Every permission of group and others: a socket of an emulated device must not be reachable for them.
     const FOR_OTHERS: u32 = 0o077;
     /// Permission bit for writing by others; with the sticky bit they cannot remove each other's files.
     const WORLD_WRITABLE: u32 = 0o002;

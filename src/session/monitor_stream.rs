@@ -69,7 +69,9 @@ impl MomentWriter {
     /// Adds a tick with the events reported in it.
     pub fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], events: &[Event]) {
         self.events.extend(events.iter().map(|event| (self.rows, *event)));
+        // Times are rounded, so a microsecond less is due too. An earlier time belongs to a new session.
         let is_due = self.last_s.is_none_or(|last_s| t_s - last_s >= STEP_S - 1e-6 || t_s < last_s);
+        // Many events end a moment early, so that they can be sent.
         if (is_due || self.events.len() as u64 >= MAX) && self.rows < MAX {
             self.columns.next_row();
             MonitorRow { ticks: *ticks }.put(&mut self.columns);
@@ -106,9 +108,11 @@ impl MomentWriter {
                 number(&mut bytes, word);
             }
         }
+        // Their moment is the first of the next batch.
         for (moment, _) in &mut self.events {
             *moment = 0;
         }
+        // Objects belong to a moment.
         let objects = if self.rows > 0 { self.objects.take() } else { None };
         put_objects(&mut bytes, objects.as_ref());
         self.columns.pack(&mut bytes);
@@ -130,6 +134,7 @@ pub fn read(bundle: &[u8]) -> Result<Vec<MonitorMoment>, WatchError> {
     let from = &mut from;
     let rows = take_number(from)?;
     let report = take_number(from)?;
+    // The last tick of a batch may exceed the writer's limit of events.
     if rows > MAX || report > 2 * MAX {
         return Err(CodecError::Long.into());
     }
@@ -167,6 +172,7 @@ fn put_objects(bytes: &mut Vec<u8>, objects: Option<&ObjectStates>) {
     number(bytes, u64::from(objects.is_some()));
     let Some(ObjectStates { t_s, rings, jaws, task }) = objects else { return };
     number(bytes, t_s.to_bits());
+    // The reader rejects more.
     let rings = &rings[..rings.len().min(RINGS_MAX as usize)];
     number(bytes, rings.len() as u64);
     let mut words = |of: Option<&[f64]>| {

@@ -13,6 +13,8 @@ use crate::{
     scene::{Scene, SceneHand as HandConfig},
 };
 
+// Physiological tremor of a hand has 8 to 12 Hz; three frequencies without a short common period do not repeat
+// visibly.
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
 /// Maximum speed at which fingers open or close a gripper, rad/s.
@@ -48,6 +50,7 @@ impl Intention {
     fn approach(&mut self, aim: Self, dt_s: f64) {
         let travel_m = aim.position_m - self.position_m;
         let distance_m = travel_m.norm();
+        // Slow enough to brake within the remaining distance, and to arrive smoothly.
         let speed_m_s = (GUIDE_M_S2 * distance_m).sqrt().min(distance_m / ARRIVAL_S).min(GUIDE_M_S);
         let wanted_m_s = aim.velocity_m_s + travel_m.try_normalize(0.0).unwrap_or_default() * speed_m_s;
         let change_m_s = wanted_m_s - self.velocity_m_s;
@@ -267,6 +270,7 @@ impl Hand {
         self.velocity_m_s += (force_n - self.velocity_m_s * HANDLE_N_S_M) * (dt_s / HANDLE_KG);
         let free_m = self.position_m + self.velocity_m_s * dt_s;
         self.position_m = free_m.map(|x| x.clamp(-HANDLE_STOP_M, HANDLE_STOP_M));
+        // A handle does not bounce off its stop.
         self.velocity_m_s.zip_apply(&(self.position_m - free_m), |speed, beyond| {
             if beyond != 0.0 {
                 *speed = 0.0;
@@ -278,6 +282,7 @@ impl Hand {
         if self.config.tremor_m == 0.0 {
             return Vector3::zeros();
         }
+        // The three waves together have the mean square of one wave of this amplitude.
         let amplitude_m = self.config.tremor_m / (TREMOR_HZ.len() as f64).sqrt();
         Vector3::from_fn(|axis, _| {
             let waves = TREMOR_HZ.iter().zip(&self.tremor_phase[axis]);

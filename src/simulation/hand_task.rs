@@ -1,4 +1,4 @@
-//! The task of a simulated hand: minimum-jerk movements, with what the gripper does meanwhile.
+//! The task of a simulated hand: minimum-jerk movements, and the state of the gripper during each.
 
 use nalgebra::Vector3;
 use nima_machine::rig::TaskAction;

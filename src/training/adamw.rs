@@ -24,6 +24,7 @@ impl AdamW {
         self.steps += 1;
         let rate = learning_rate as f32;
         let decay = 1.0 - rate * self.weight_decay;
+        // The means start at zero; this corrects them in the first steps (the paper's bias correction).
         let [of_mean, of_square] = [MEAN, SQUARE].map(|memory| 1.0 / (1.0 - memory.powi(self.steps)));
         let moments = self.mean.iter_mut().zip(&mut self.square);
         for ((parameter, gradient), (mean, square)) in parameters.iter_mut().zip(gradient).zip(moments) {

@@ -66,6 +66,7 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
     let wrist_n = part.methods.iter().find(|method| method.method == NO_MODEL).map_or(f64::INFINITY, worst);
     let free_n = part.no_contact.iter().map(|rest| rest.mean.abs()).fold(0.0, f64::max);
     let doubt = part.doubt_fraction;
+    // On its training data every network looks accurate.
     if !evaluation.trained_on.is_empty() {
         (Verdict::PoorData, "the model was trained on these data; record new data".to_owned())
     } else if rows < ROWS || free < OF_EACH || rows - free < OF_EACH {

@@ -26,6 +26,7 @@ use nima_recording::{
 
 use super::{fit::TrainingFit, folds::Folds};
 
+// Design choice: one second of the wizard's rows (5 ms). A held-out part of fewer rows would say little.
 pub const MIN_ROWS: usize = 200;
 
 fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
@@ -131,8 +132,10 @@ pub fn train(
         let reason = format!("row {} of the data has a quaternion of length zero", row + 1);
         return Err(TipForceError::Columns { reason });
     }
+    // Scaled by all rows, so that the members have the same inputs and can be averaged.
     let features = Normalisation::of(&x, expansion.width(), 0..data.rows());
     let outputs = Normalisation::of(&data.y, data.outputs.len(), 0..data.rows());
+    // The errors are divided by the variance of the outputs.
     if let Some(column) = outputs.constant().next() {
         return Err(TipForceError::ConstantOutput { column: data.outputs[column].clone() });
     }
@@ -193,6 +196,7 @@ fn all_members(fit: &TrainingFit<'_>, folds: &Folds) -> Result<Vec<(Member, Memb
                     }
                     let (training, validation) = folds.split(member);
                     let result = fit.member(member, &training, &validation);
+                    // The other threads end before their next member.
                     if result.is_err() {
                         next.store(count, Ordering::Relaxed);
                     }
@@ -202,6 +206,7 @@ fn all_members(fit: &TrainingFit<'_>, folds: &Folds) -> Result<Vec<(Member, Memb
         }
     });
     let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    // The order must not depend on the threads.
     results.sort_by_key(|(member, _)| *member);
     results.into_iter().map(|(_, result)| result).collect()
 }
@@ -254,6 +259,7 @@ pub fn train_model(
     let mut spreads = Vec::new();
     for (_, judge) in trained.folds.iter().take(settings.members) {
         for row in judge {
+            // The most uncertain output decides.
             let spread = network.answer(&x[row * width..(row + 1) * width], 1.0).spread;
             spreads.push(spread.iter().copied().fold(0.0, f32::max));
         }

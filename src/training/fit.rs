@@ -37,11 +37,13 @@ impl TrainingFit<'_> {
         training: &[usize],
         validation: &[usize],
     ) -> Result<(Member, MemberFigures), TipForceError> {
+        // Multiplied, so that no member of another seed has the same sequence.
         let mut generator =
             fastrand::Rng::with_seed(self.settings.seed.wrapping_mul(1_000_003).wrapping_add(member as u64));
         let mut network = Perceptron::new(self.shape, &self.settings.hidden, self.skip, &mut generator);
         let mut optimiser = AdamW::new(network.parameters_mut().len(), self.settings.weight_decay);
         let epochs_max = self.settings.epochs_for(training.len());
+        // At least five, because the loss of a few epochs varies by chance.
         let patience = ((epochs_max as f64 * PATIENCE).ceil() as usize).max(5);
         let mut order = training.to_vec();
         // A network that does not improve the held-out rows is dropped, leaving only the linear path.
@@ -99,6 +101,7 @@ impl TrainingFit<'_> {
                 return Err(TipForceError::Cancelled);
             }
             let part = from + length * batches / total;
+            // Cosine decay of the learning rate (Loshchilov and Hutter, SGDR, ICLR 2017) to a fiftieth of the first.
             let fall = 0.02 + 0.98 * 0.5 * (1.0 + (std::f64::consts::PI * part).cos());
             sum += network.gradient(&self.batch(rows), &mut gradient);
             optimiser.step(self.settings.learning_rate * fall, &gradient, network.parameters_mut());

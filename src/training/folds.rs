@@ -6,6 +6,7 @@ use std::ops::Range;
 use nima_recording::tip_force::DataSet;
 
 /// Rows left out between a held-out block and its neighbours if a trajectory had to be divided.
+/// A quarter of a second of the wizard's rows (5 ms).
 const GAP: usize = 50;
 
 /// With fewer trajectories than this, they are divided into blocks. Whole trajectories are preferable: early stopping
@@ -34,6 +35,7 @@ impl Folds {
         };
         let count = count.min(blocks.len());
         let mut order: Vec<usize> = (0..blocks.len()).collect();
+        // Another random sequence than that of the initial weights.
         fastrand::Rng::with_seed(seed ^ 0xf01d).shuffle(&mut order);
         let mut fold = vec![0; blocks.len()];
         for (place, block) in order.into_iter().enumerate() {

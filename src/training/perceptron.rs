@@ -44,6 +44,7 @@ impl Perceptron {
         let mut parameters = Vec::new();
         for (k, pair) in widths.windows(2).enumerate() {
             let last = k + 2 == widths.len();
+            // A uniform distribution from -r to r has the variance `r^2 / 3`.
             let reach = if last { 0.0 } else { (3.0 / pair[0] as f32).sqrt() };
             parameters.extend((0..(pair[0] + 1) * pair[1]).map(|_| reach * (2.0 * generator.f32() - 1.0)));
         }

@@ -30,7 +30,7 @@ const GONE_S: f64 = 0.020;
 const FELT_N: f64 = 0.3;
 const WAIT: Duration = Duration::from_secs(12);
 
-fn here(path: &str) -> PathBuf {
+pub(super) fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
@@ -50,13 +50,13 @@ fn rig(ports: [u16; 3]) -> RigConfig {
     rig
 }
 
-fn free_ports() -> [u16; 3] {
+pub(super) fn free_ports() -> [u16; 3] {
     let sockets = [(); 3].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
     sockets.map(|socket| socket.local_addr().unwrap().port())
 }
 
 /// Form of the examples: compiled or interpreted.
-enum Examples {
+pub(super) enum Examples {
     C(PathBuf),
     Python,
 }
@@ -77,7 +77,12 @@ impl Examples {
         Some(Self::C(folder.to_owned()))
     }
 
-    fn start(&self, name: &str, ports: &[u16]) -> Running {
+    pub(super) fn start(&self, name: &str, ports: &[u16]) -> Running {
+        self.start_with(name, ports, &[])
+    }
+
+    /// The same with more words on its command line.
+    pub(super) fn start_with(&self, name: &str, ports: &[u16], more: &[String]) -> Running {
         let mut process = match self {
             Self::C(folder) => Process::new(folder.join(name)),
             Self::Python => {
@@ -86,13 +91,13 @@ impl Examples {
                 python
             }
         };
-        process.arg("127.0.0.1").args(ports.iter().map(u16::to_string));
+        process.arg("127.0.0.1").args(ports.iter().map(u16::to_string)).args(more);
         Running(Some(process.stdout(Stdio::piped()).spawn().unwrap()))
     }
 }
 
 /// A running example, killed when it is dropped.
-struct Running(Option<Child>);
+pub(super) struct Running(Option<Child>);
 
 impl Running {
     #[expect(unsafe_code, reason = "std can only kill")]
@@ -124,16 +129,16 @@ impl Drop for Running {
     }
 }
 
-struct Fixture {
+pub(super) struct Fixture {
     handle: LoopHandle,
     newest: Option<Tick>,
-    ticks: Vec<Tick>,
+    pub(super) ticks: Vec<Tick>,
     healths: [Health; 3],
     lost: Vec<(usize, Loss)>,
 }
 
 impl Fixture {
-    fn new(rig: RigConfig) -> Self {
+    pub(super) fn new(rig: RigConfig) -> Self {
         let scene = Scene::load("peg_transfer").unwrap();
         let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
         let handle = nima_simulation::start(&plan).unwrap();
@@ -162,7 +167,7 @@ impl Fixture {
     }
 
     /// Waits for a condition; if it fails, the test is judged only if the machine had time.
-    fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
+    pub(super) fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
         let begin = Instant::now();
         while !good(self) {
             if begin.elapsed() > WAIT {
@@ -174,7 +179,7 @@ impl Fixture {
         }
     }
 
-    fn state(&self) -> LoopState {
+    pub(super) fn state(&self) -> LoopState {
         self.newest.map_or(LoopState::Idle, |tick| tick.state)
     }
 
@@ -187,7 +192,7 @@ impl Fixture {
     }
 
     /// Engages by command, and waits until the hand feels the sensor's force.
-    fn engage(&mut self) {
+    pub(super) fn engage(&mut self) {
         // The status may be from before a loss.
         self.healths = [Health::default(); 3];
         self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == ConnectionState::Connected));
@@ -234,10 +239,9 @@ fn numbers_in(path: &str, name: &str) -> Vec<f64> {
 fn the_arm_of_the_examples_begins_in_the_trocar_of_the_guide() {
     let set = rig([1, 2, 3]).devices.unwrap().right.unwrap();
     let arm = Arm::new(&set.mount).unwrap();
-    for (path, name) in [
-        ("assets/external/arm_and_sensor.c", "joint_rad[NIMA_JOINTS] ="),
-        ("assets/external/arm_and_sensor.py", "START_RAD ="),
-    ] {
+    for (path, name) in
+        [("assets/external/arm_and_sensor.c", "gen3_rad[7] ="), ("assets/external/arm_and_sensor.py", "START_RAD =")]
+    {
         let begin = Joints::from_iterator(numbers_in(path, name));
         let pose = arm.pose(&begin);
         let miss_m = pose.axis_miss_m(&set.rcm.trocar_m).norm();

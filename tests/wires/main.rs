@@ -11,6 +11,7 @@ mod frames;
 mod haply;
 mod killed;
 mod one_core;
+mod other_arm;
 mod raw_readings;
 mod rig_diagnosis;
 mod sides;

@@ -30,7 +30,9 @@ const EXPERT_BOUND: f64 = 2.0;
 /// Solves per second of every ridge (at most one per tick). The ridges are solved in turn, and each solution is used at
 /// once. Half this number reduces the accuracy by 1 % at 10 ms; a higher number has no benefit.
 const SOLVE_HZ: f64 = 150.0;
+// Every ridge has a linear and a full model.
 const EXPERTS: usize = RIDGES * NESTED;
+// Zero parameters predict no change, which is plain reflection.
 const UNKNOWN: Solutions = [[Lanes::ZERO; REGRESSORS]; NESTED];
 /// Fraction of the reflection's error that counts while the evaluation uses newer parameters than those that would have
 /// been sent (which is optimistic), and in the first moments, when only free motion has been seen: a first contact was

@@ -129,6 +129,7 @@ impl PackedNumbers for BaselineModel {
     }
 
     fn read(row: &mut PackedReader<'_>) -> Option<Self> {
+        // An unknown tag fails here, so that a newer sender is not misread.
         Some(match row.count(5)? {
             0 => Self::Nothing,
             1 => {

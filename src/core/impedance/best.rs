@@ -12,6 +12,7 @@ use super::{
 use crate::signal::{DelayLine, Lanes};
 
 /// Memory of the errors (s by the clock).
+/// Design choice: longer memories follow a change of tissue later, shorter ones follow the noise of the errors.
 const MEMORY_S: f64 = 1.0;
 /// Matched rendering learns more slowly than anchored rendering, so its past errors are pessimistic. At first they are
 /// reduced by this fraction; they count fully once the memory is full.

@@ -8,6 +8,7 @@ use crate::signal::{Lanes, settled};
 /// without damping it was up to 2.2 mW (`nima study passivity`).
 const FRACTION: f64 = 0.03;
 /// Memory of the usual motion and force (s by the clock).
+/// Covers several contacts and pauses, so that the damping does not change within one of them.
 const USUAL_S: f64 = 20.0;
 
 /// Viscous damping in proportion to the usual force over the usual motion, which makes it independent of units.

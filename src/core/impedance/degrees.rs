@@ -27,7 +27,9 @@ pub(super) struct ImpedanceDegrees {
 impl ImpedanceDegrees {
     pub(super) fn new(settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let block = settings.block();
+        // A constant and three columns (x, v, a) for each degree.
         let columns = 1 + 3 * settings.max_degree;
+        // Twice the block is the number of rows of a window: the setting is per row.
         let ridge = settings.ridge * 2.0 * block as f64;
         Self {
             window: SlidingWindow::new(
@@ -56,12 +58,14 @@ impl FollowerEnd for ImpedanceDegrees {
     fn take(&mut self, seen: &MethodInput<'_>, _parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         let features = &seen.posture.features;
         if !seen.learn {
+            // The horizon keeps its delay line in step with time also while nothing is learnt.
             self.horizon.rest(features, seen.force_n);
             return;
         }
         let axes = self.settings.axes;
         let columns = self.solution.columns();
         let mut row = [Lanes::ZERO; MAX_ROW];
+        // A row of zeros changes nothing, but keeps the window in step with time.
         if seen.usable {
             row[0] = active(&nalgebra::Vector3::repeat(1.0), axes);
             row[1..columns].copy_from_slice(&features[..columns - 1]);
@@ -71,6 +75,7 @@ impl FollowerEnd for ImpedanceDegrees {
         self.solution.solve(self.window.current());
         let chosen = self.horizon.step(&self.solution, features, seen.force_n, seen.good);
         report.columns = chosen as u8;
+        // At least two columns: a single one has no condition to report.
         let condition = self.solution.condition(2.max(1 + chosen));
         report.condition = condition.0[..axes].iter().fold(1.0, |worst, c| c.max(worst));
         report.rank = rank(self.window.current(), self.ridge, axes);

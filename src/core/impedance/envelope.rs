@@ -4,6 +4,7 @@ use crate::signal::Lanes;
 
 /// Memory of the range (s), and how far a rendered force may exceed the range, as a fraction of its width. Chosen as in
 /// `anchored.rs`.
+/// A shorter memory would clip the first push after a pause; a longer one lets an old impact widen the range.
 const MEMORY_S: f64 = 5.0;
 const MARGIN: f64 = 0.1;
 
@@ -23,9 +24,12 @@ impl Envelope {
     /// Takes a force (N); `pace`: how fast time runs, 1 by the clock on the wall.
     pub fn see(&mut self, force_n: Lanes, pace: f64) {
         let [low, high] = self.edges_n.unwrap_or([force_n; 2]);
+        // Both edges leak towards their middle and not towards zero, because the range may lie far from zero (a held
+        // load).
         let middle = (low + high) * 0.5;
         let leak = self.leak * pace;
         let leaked = |edge: Lanes| (edge + (middle - edge) * leak).settled();
+        // A force outside the range widens it at once.
         self.edges_n = Some([leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)]);
     }
 

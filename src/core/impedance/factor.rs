@@ -69,6 +69,7 @@ impl WindowSummary for ImpedanceFactor {
         add_rows([self], [row]);
     }
 
+    // Three at a time, because a sliding window adds each row to three summaries.
     fn add_three(targets: [&mut Self; 3], rows: [&Self::Row; 3]) {
         add_rows(targets, rows);
     }
@@ -103,6 +104,7 @@ impl WindowSummary for ImpedanceFactor {
 
 /// Returns the root of a sum of squares; zero below 1e-280, where squares lose digits, reflections would no longer be
 /// orthogonal and the reciprocal of a square overflows.
+/// The square of 1e-140 N is far below any sensor's noise, so nothing measurable is lost.
 #[inline]
 fn norm_of(squares: Lanes) -> Lanes {
     squares.map(|squares| if squares < 1e-280 { 0.0 } else { squares }).sqrt()
@@ -128,8 +130,10 @@ fn add_rows<const COUNT: usize>(mut targets: [&mut ImpedanceFactor; COUNT], rows
             let norm = norm_of(diagonal * diagonal + entry * entry);
             let inverse = norm.recip_or_zero();
             // Nothing to rotate: pass the row to the next column unchanged.
+            // Without a cosine of 1 the row would vanish instead of passing on.
             let cosine = (diagonal * inverse).zip(norm, |cosine, norm| if norm == 0.0 { 1.0 } else { cosine });
             rotations[j] = (cosine, entry * inverse);
+            // The diagonal is now positive, whatever its sign was before.
             column[j] = norm;
         }
     }

@@ -44,6 +44,7 @@ impl Scales {
         let scaled = Motion {
             x: motion.x * self.position_m.recip(),
             v: motion.v * self.velocity_m_s.recip(),
+            // Multiplied by a reciprocal: one division per scale instead of one per axis.
             a: motion.a * self.acceleration_m_s2.recip(),
         };
         features(&scaled, degree)
@@ -57,6 +58,7 @@ pub(super) fn features(motion: &Motion, degree: usize) -> ImpedanceFeatures {
     let mut columns = [Lanes::ZERO; MOTION_COLUMNS];
     let base = [motion.x, motion.v, motion.a].map(|u| u.map(|u| if u.abs() < FLUSH { 0.0 } else { u }));
     let mut power = base;
+    // The power of each triple is built from the one before: no call of `powi` in a tick.
     for triple in columns.chunks_exact_mut(3).take(degree) {
         triple.copy_from_slice(&power);
         for (power, base) in power.iter_mut().zip(base) {

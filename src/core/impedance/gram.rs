@@ -69,6 +69,7 @@ impl WindowSummary for Gram {
     fn add(&mut self, row: &Self::Row) {
         for j in 0..=self.columns {
             let start = column_start(j);
+            // Only the upper triangle: the sums are symmetric.
             for (element, entry) in self.elements[start..=start + j].iter_mut().zip(row) {
                 *element += *entry * row[j];
             }
@@ -76,6 +77,7 @@ impl WindowSummary for Gram {
     }
 
     fn merge(&mut self, other: &mut Self) {
+        // The unused end of the array stays zero, so it is not added.
         let used = column_start(self.columns + 1);
         for (element, other) in self.elements[..used].iter_mut().zip(&other.elements) {
             *element += *other;

@@ -10,6 +10,7 @@ use super::{
 use crate::signal::{DelayLine, Lanes, settled};
 
 /// Time constant of the running errors (s). Chosen as in `anchored.rs`.
+/// Shorter memories switch the degree within a contact, longer ones keep a degree of the previous contact.
 const MEMORY_S: f64 = 0.5;
 /// A correction may be at most this many times the recent change of force over the delay. Chosen as in `anchored.rs`.
 /// Without a bound, an extrapolation that is wrong once would be felt as a blow.
@@ -20,7 +21,7 @@ const MARGIN: f64 = 0.98;
 /// Renewals of the solutions per second (at most one per tick): they are large, and hardly change in 5 ms.
 const RENEW_HZ: f64 = 200.0;
 
-/// Stores the predictions of every candidate (motion columns 0 to 15; 0 is no correction), and compares them with the
+/// Stores the predictions of every candidate (motion columns 0 to 15; 0 means no correction), and compares them with the
 /// change of force that followed. The prediction for time `s` uses the solution, the force and the features of `s - D`
 /// and the features of `s`, which are available to a leader at `s`.
 #[derive(Clone, Debug)]
@@ -79,6 +80,7 @@ impl Horizon {
     }
 
     fn keep(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
+        // The bound of the time of the prediction, not of its evaluation: the leader could not know the later one.
         self.past.push(HorizonHistory { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
     }
 
@@ -97,6 +99,7 @@ impl Horizon {
         }
         self.keep(features, force_n);
         if self.tick.is_multiple_of(self.every) {
+            // Pushed before the tick advances, so that `age` in `judge` counts whole periods.
             self.solutions.push(*solution.increments());
         }
         self.tick += 1;
@@ -106,13 +109,16 @@ impl Horizon {
     fn judge(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
         // This runs before the tick is stored, so the newest entry is one tick old.
         let Some(then) = self.past.get(self.delay_ticks - 1) else { return };
+        // How many renewals lie between the prediction and now.
         let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;
         let Some(solution) = self.solutions.get(age) else { return };
         let change = force_n - then.force_n;
+        // See `BOUND`: it limits how far a prediction may go.
         // The bound rises at once and falls slowly, so that the first contact after a pause is not clipped by the calm
         // before it.
         let decayed = settled(self.largest_change_n * (1.0 - self.forget));
         self.largest_change_n = decayed.max(change.norm());
+        // Predictions use changes of features since the anchor; the force at the anchor is measured.
         let mut moved = *features;
         for (now, then) in moved.iter_mut().zip(&then.features) {
             *now -= *then;
@@ -145,6 +151,7 @@ impl Horizon {
         if delay_ticks != self.delay_ticks {
             self.delay_ticks = delay_ticks;
             self.errors_n = [0.0; MOTION_COLUMNS + 1];
+            // A bound from another delay would not fit changes over this one.
             self.largest_change_n = 0.0;
         }
     }

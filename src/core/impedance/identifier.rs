@@ -15,6 +15,7 @@ use super::{
 use crate::signal::{DelayLine, Lanes, settled};
 
 /// Time constant of the report's running errors (s).
+/// Half a second is readable on the screen and short enough to follow one contact.
 const ERROR_MEMORY_S: f64 = 0.5;
 
 /// Identifies the impedance in a sliding window, one [`Sample`] per tick.

@@ -12,6 +12,7 @@ pub(super) fn rank(factor: &ImpedanceFactor, ridge: f64, axes: usize) -> u8 {
         let total = column.iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
         for (lane, rank) in ranks.iter_mut().enumerate().take(axes) {
             let own = column[j][lane] * column[j][lane] - ridge;
+            // 1e-24 is the square of 1e-12: a part this small is the rounding of the column itself.
             *rank += u8::from(own > ridge.max(1e-24 * total[lane]));
         }
     }
@@ -24,7 +25,9 @@ pub(super) fn excitation(factor: &ImpedanceFactor, ridge: f64, settings: &Impeda
     let rows = factor.column(0)[0];
     let deviation = |j: usize, scale: f64| {
         let squares = factor.column(j)[1..].iter().fold(Lanes::ZERO, |sum, r| sum + *r * *r);
+        // The ridge adds to every diagonal; without it a resting axis would show a variation.
         let variance = (squares - Lanes::splat(ridge)).map(|s| s.max(0.0));
+        // The constant's diagonal is the square root of the number of rows.
         (variance.sqrt() * rows.recip_or_zero().map(f64::abs) * scale).vector()
     };
     ImpedanceExcitation {

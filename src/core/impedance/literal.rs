@@ -33,6 +33,7 @@ impl LiteralSolver {
             axes,
             penalty: recipe.penalty(scales),
             models: [LiteralModel::NONE; MAX_DEGREE],
+            // Infinite, not zero: a degree that was never solved must not be the best one.
             error_n: [f64::INFINITY; MAX_DEGREE],
             failures: 0,
         }
@@ -48,11 +49,14 @@ impl LiteralSolver {
             let mut m = back_substitute(&r, columns, n);
             let squares = residual_squares(gram, &m, columns);
             // This sum is not finite in any lane where a coefficient or the error is not finite.
+            // Times zero: a finite number gives 0, NaN and infinity give NaN.
             let finite = m[..columns].iter().fold(squares, |sum, m| sum + *m * 0.0);
             let solved: [bool; LANES] =
                 std::array::from_fn(|lane| lane < self.axes && definite[lane] >= columns && finite[lane].is_finite());
             let mut square_n2 = 0.0;
             for axis in 0..self.axes {
+                // On a failed axis the model is zero, so its error is the force itself. The difference of large sums
+                // may round below zero.
                 square_n2 += if solved[axis] { squares[axis].max(0.0) } else { gram.column(n)[n][axis] };
             }
             let failed = solved[..self.axes].iter().filter(|solved| !**solved).count();
@@ -61,9 +65,11 @@ impl LiteralSolver {
                 m = m.map(|m| Lanes(std::array::from_fn(|lane| if solved[lane] { m[lane] } else { 0.0 })));
             }
             let model = &mut self.models[degree - 1];
+            // A model is reported as long as one axis has one.
             model.degree = if failed < self.axes { degree as u8 } else { 0 };
             model.constant_n = if first > 0 { m[0] } else { Lanes::ZERO };
             model.coefficients.copy_from_slice(&m[first..first + MOTION_COLUMNS]);
+            // Per row and over all axes: the paper's 3-D reconstruction error.
             self.error_n[degree - 1] = (square_n2 / rows.max(1) as f64).sqrt();
         }
     }
@@ -72,6 +78,7 @@ impl LiteralSolver {
     fn ridge(&self, first: usize, rows: usize) -> [f64; GRAM_ROW] {
         let mut ridge = [0.0; GRAM_ROW];
         for (ridge, penalty) in ridge[first..].iter_mut().zip(self.penalty) {
+            // The setting is per row, the sums are over all rows.
             *ridge = rows as f64 * penalty;
         }
         ridge
@@ -99,6 +106,7 @@ impl LiteralSolver {
 
     /// Returns the paper's choice: the degree with the smallest 3-D error inside the window; 0 if none could be solved.
     pub fn choice(&self) -> usize {
+        // Only solved degrees compete: a failed one has the error of no model, which a bad fit may exceed.
         (1..=self.max_degree)
             .filter(|&degree| self.is_solved(degree))
             .min_by(|&a, &b| self.window_error_n(a).total_cmp(&self.window_error_n(b)))
@@ -137,6 +145,7 @@ fn cholesky(gram: &Gram, ridge: &[f64; GRAM_ROW]) -> (Triangle, [usize; LANES]) 
                 column[..j].iter().fold(Lanes::ZERO, |sum, b| sum + *b * *b)
             };
             let rest = gram.column(j)[k] - known;
+            // The reciprocal of a zero pivot is zero, so a column without information gets no coefficient.
             column[k] = if k < j { rest * above[k].recip_or_zero() } else { rest };
         }
         if j < n {
@@ -146,6 +155,7 @@ fn cholesky(gram: &Gram, ridge: &[f64; GRAM_ROW]) -> (Triangle, [usize; LANES]) 
                 let positive = column[j][lane] > 0.0;
                 *definite = if positive { *definite } else { (*definite).min(j) };
             }
+            // A negative pivot has been counted above; its root would turn all later columns into NaN.
             column[j] = column[j].map(|pivot| pivot.max(0.0).sqrt());
         }
     }

@@ -45,8 +45,10 @@ impl Posture {
 #[inline]
 pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
     let norm = force.norm();
+    // Also the usual case, so it is first.
     if norm <= bound_n {
         force
+    // A direction is kept; limiting each axis would turn it.
     } else if norm.is_finite() {
         force * (bound_n / norm)
     } else {
@@ -72,6 +74,7 @@ pub struct LinkPacket {
 
 impl LinkPacket {
     pub const BLANK: Self = Self {
+        // Older than every real packet, so the first one is always newer.
         t_s: f64::NEG_INFINITY,
         force_n: Vector3::new(0.0, 0.0, 0.0),
         fresh: false,
@@ -191,6 +194,7 @@ impl IdentificationReport {
         nima_degree: 0,
         columns: 0,
         gain: 0.0,
+        // The condition number of no column at all.
         condition: 1.0,
         rank: 0,
         excitation: ImpedanceExcitation {

@@ -218,10 +218,12 @@ impl Leaders {
         if !measured_n.is_finite() {
             return forces_n;
         }
+        // In order: a mode may use the forces of those before it (`PARTS`).
         for (slot, leader) in self.0.iter_mut().enumerate() {
             let moment = LeaderInput { parcel, measured_n, now, then, x, age_ticks, forces_n: &forces_n };
             forces_n[slot] = leader.render(&moment);
         }
+        // Cleared afterwards instead of skipped, so that each leader sees every tick.
         for mode in Mode::ALL.into_iter().filter(|mode| !parcel.modes.contains(*mode)) {
             forces_n[mode.index()] = None;
         }

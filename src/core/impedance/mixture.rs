@@ -6,6 +6,7 @@ use crate::signal::Lanes;
 /// Memory of the errors (s). Chosen as in `anchored.rs`.
 const MEMORY_S: f64 = 1.0;
 /// Amount of evidence needed for full trust (s).
+/// Design choice: shorter ramps act on a few samples, longer ones leave more of a new delay uncorrected.
 const RAMP_S: f64 = 0.1;
 /// Errors below this count as equal (N), because the weights would otherwise divide one rounding error by another.
 const EQUAL_N: f64 = 1e-12;

@@ -38,6 +38,7 @@ macro_rules! modes {
             pub const fn index(self) -> usize {
                 enum Place { $($mode,)* Baseline }
                 let place = match self {
+                    // An enum without a payload can be cast to its position; `Mode` has one in its last variant.
                     $(Self::$mode => Place::$mode,)*
                     Self::Baseline(_) => Place::Baseline,
                 };
@@ -120,6 +121,7 @@ static OTHERS: OnceLock<fn(Baseline) -> Entry> = OnceLock::new();
 /// [`SettingsError::Baseline`](super::SettingsError).
 pub fn add_baselines(entry: fn(Baseline) -> Entry) {
     // A second call has no effect.
+    // The first list stays: replacing it would change the meaning of a mode in a running process.
     OTHERS.set(entry).ok();
 }
 
@@ -129,6 +131,7 @@ impl Mode {
         let mut modes = [Self::Dfr; Baseline::ALL.len()];
         let mut i = 0;
         while i < modes.len() {
+            // A loop instead of `map`: a constant cannot call closures.
             modes[i] = Self::Baseline(Baseline::ALL[i]);
             i += 1;
         }

@@ -6,6 +6,7 @@ use crate::signal::Lanes;
 const LARGEST_S: f64 = 20.0;
 /// Fraction of the maximum motion above which time runs at full pace, and the pace at rest. Time stands nearly still at
 /// rest, so that a pause does not make the regression forget what the last motion showed.
+/// Design choice: a larger fraction would slow time in gentle motion, a smaller one would let tremor run it.
 const FULL: f64 = 0.1;
 const REST: f64 = 0.02;
 /// The pace decays with this time constant (s), so that a turning point does not stop the clock.
@@ -33,10 +34,13 @@ impl MotionClock {
     /// Adds the motion of this tick (position above its 20 ms low-pass, m).
     pub(super) fn step(&mut self, motion_m: Lanes) {
         let size_m = motion_m.map(f64::abs);
+        // By its own pace, so that a rest does not shrink the largest motion and make tremor look like motion.
         let fade = 1.0 - self.pace / (LARGEST_S * self.rate_hz);
         self.largest_m = (self.largest_m * fade).settled().zip(size_m, f64::max);
+        // A zero maximum gives a fraction of zero, hence the pace of rest.
         let fractions = size_m * (self.largest_m * FULL).recip_or_zero();
         let pace = fractions.0.into_iter().fold(REST, f64::max).min(1.0);
+        // Rises at once and falls slowly: see `HOLD_S`.
         self.pace = pace.max(self.pace + (pace - self.pace) * self.release);
         self.passed += self.pace;
         let fraction = fraction(self.pace, self.passed, KNEE_S * self.rate_hz);
@@ -60,6 +64,7 @@ impl MotionClock {
 
 /// Returns the weight of the newest value in a running mean over `memory` ticks of the clock, after `passed` ticks.
 pub(super) fn fraction(pace: f64, passed: f64, memory: f64) -> f64 {
+    // Plain mean until the memory is full: the first value counts fully and the start at zero leaves no trace.
     (pace / passed.max(1.0).min(memory)).min(1.0)
 }
 

@@ -11,6 +11,7 @@ use crate::signal::{Lanes, NOTHING, SimdLoop, SimdVector, widest};
 /// The largest model (matched rendering), because all solvers share this fixed memory.
 pub(super) const MAX: usize = 25;
 /// A pivot below this fraction of its column's square is only rounding error, so the column is left out.
+/// A few thousand roundings of f64, and far below the ridges, which bound the scaled condition to about 1e5.
 const ROUNDING: f64 = 1e-12;
 /// Columns that are factorised together, because their sums do not depend on each other.
 const BLOCK: usize = 4;
@@ -96,6 +97,7 @@ impl NormalFactor {
     /// Factorises the sums of `right.len()` columns with `ridge` added to their diagonal. Sums that have decayed to
     /// almost zero are set to zero.
     pub(super) fn renew(&mut self, gram: &mut [Lanes], right: &mut [Lanes], ridge: &[Lanes]) {
+        // Subnormal numbers would make every later product slow.
         gram.iter_mut().chain(&mut *right).for_each(|sum| *sum = sum.settled());
         widest(Renew { factor: self, gram, right, ridge });
     }
@@ -123,6 +125,7 @@ impl SimdLoop for Renew<'_> {
         let columns = self.right.len();
         let mut first = 0;
         while first < columns {
+            // Blocks of columns: the earlier rows are read once for four columns.
             let width = BLOCK.min(columns - first);
             // The entries of these columns, row by row, and the sums of products of every two of them.
             let mut rows = [[none; BLOCK]; MAX];
@@ -144,6 +147,7 @@ impl SimdLoop for Renew<'_> {
                         known[c] = known[c].plus(a.times(row[c]));
                     }
                 }
+                // Inverses are stored, because a multiplication is cheaper than a division in every later row.
                 let inverse = V::of(&self.factor.inverse[k]);
                 let right = V::of(&self.factor.right[k]);
                 let row = &mut rows[k];
@@ -155,10 +159,12 @@ impl SimdLoop for Renew<'_> {
             }
             for p in 0..width {
                 let j = first + p;
+                // The ridge enters at the pivot only, so the stored sums stay free of it.
                 let own = rows[j][p].plus(V::of(&self.ridge[j]));
                 let inverse = inverse_root(own.minus(products[p][p]).lanes(), own.lanes());
                 let scale = V::of(&inverse);
                 let right = z[p].times(scale);
+                // The remaining columns of this block are finished here, because they depend on this pivot.
                 for c in p + 1..BLOCK {
                     rows[j][c] = rows[j][c].minus(products[p][c]).times(scale);
                     z[c] = z[c].minus(rows[j][c].times(right));
@@ -188,6 +194,7 @@ fn add_products<V: SimdVector>(products: &mut [[V; BLOCK]; BLOCK], row: &[V; BLO
 /// Returns `1 / sqrt(pivot)`; 0 if the pivot is rounding.
 #[inline(always)]
 fn inverse_root(pivot: Lanes, own: Lanes) -> Lanes {
+    // A zero leaves the column out: its coefficient becomes zero instead of a quotient of roundings.
     pivot.zip(own, |pivot, own| if pivot > NOTHING.max(ROUNDING * own) { 1.0 / pivot.sqrt() } else { 0.0 })
 }
 

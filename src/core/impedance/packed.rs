@@ -7,6 +7,7 @@ use super::{LinkPacket, MODES, Mode, ModeSet, matched::COLUMNS as MATCHED_COLUMN
 use crate::signal::Lanes;
 
 /// Maximum number of numbers in one packed model: matched rendering with every column in use.
+/// Apart from its columns, a matched model has 21 numbers (form, degrees, five vectors, two lengths, a count).
 pub const PACKED_MAX: usize = 3 * MATCHED_COLUMNS + 24;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,13 +119,16 @@ pub struct PackedWriter<'a> {
 
 impl PackedWriter<'_> {
     pub(super) fn put(&mut self, number: f64) {
+        // Never past the end: a row that is too long loses its tail instead of failing in a tick.
         if let Some(place) = self.packed.numbers.get_mut(usize::from(self.packed.len)) {
+            // f32 halves the packet; 24 bits are finer than any sensor.
             *place = number as f32;
             self.packed.len += 1;
         }
     }
 
     pub(super) fn lanes(&mut self, lanes: Lanes) {
+        // The fourth lane is padding.
         let Lanes([x, y, z, _]) = lanes;
         for number in [x, y, z] {
             self.put(number);
@@ -132,6 +136,7 @@ impl PackedWriter<'_> {
     }
 
     pub(super) fn row(&mut self, row: &[Lanes]) {
+        // Trailing zeros are not sent: most models use a part of their columns.
         let used = row.iter().rposition(|lanes| *lanes != Lanes::ZERO).map_or(0, |last| last + 1);
         self.put(used as f64);
         row.iter().take(used).for_each(|lanes| self.lanes(*lanes));
@@ -154,6 +159,7 @@ impl PackedReader<'_> {
     /// Returns a whole number up to `max`.
     pub(super) fn count(&mut self, max: usize) -> Option<usize> {
         let number = self.take()?;
+        // A negative or huge number saturates here and then fails the comparison.
         let count = number as usize;
         ((count as f64 - number).abs() < f64::EPSILON && count <= max).then_some(count)
     }

@@ -69,6 +69,7 @@ impl RenderingMethod for Linear {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
+        // The degree of linear is always 1.
         u8::from(report.paper_degree > 0)
     }
 }
@@ -136,6 +137,7 @@ pub(super) struct PaperMethod {
 impl PaperMethod {
     /// Creates the model for the mode literal, or for linear alone, with the recipe in the settings.
     pub(super) fn new(mode: Mode, settings: &ImpedanceSettings) -> Self {
+        // Linear is the paper's predecessor with degree 1 (IMA).
         let degree = if mode == Mode::Linear { 1 } else { settings.max_degree };
         let recipe = &settings.literal;
         let one = active(&Vector3::repeat(1.0), settings.axes);
@@ -151,6 +153,7 @@ impl PaperMethod {
 
 impl FollowerEnd for PaperMethod {
     fn serves(&self, modes: ModeSet) -> bool {
+        // Literal contains the linear model, so a separate window is needed only without literal.
         modes.contains(self.mode) && (self.mode == Mode::Literal || !modes.contains(Mode::Literal))
     }
 
@@ -162,12 +165,14 @@ impl FollowerEnd for PaperMethod {
     }
 
     fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport) {
+        // The window stops with the identification: rest would fill it with rows that say nothing.
         if !seen.learn {
             return;
         }
         let Self { window, solver, next, .. } = self;
         let row = if seen.usable { window.current().row(seen.x, seen.force_n) } else { Gram::BLANK_ROW };
         window.push(&row);
+        // The paper fits whole windows; the first 300 ms have no fit.
         if !window.is_full() {
             return;
         }
@@ -181,6 +186,7 @@ impl FollowerEnd for PaperMethod {
         report.paper_degree = choice as u8;
         report.literal_failures = solver.failures();
         for degree in 1..=MAX_DEGREE {
+            // In the report only: the reconstruction at the newest sample, as the paper evaluates it.
             report.reconstruction_n[degree - 1] = (seen.force_n - solver.model(degree).product(seen.x)).vector();
         }
     }

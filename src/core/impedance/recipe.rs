@@ -10,6 +10,7 @@ use super::{
 use crate::signal::Lanes;
 
 /// Time after a window in which [`DegreeChoice::Next`] evaluates its fits (s).
+/// Design choice: 10 rows at 1 kHz, short enough for the tissue to stay the same.
 const JUDGED_S: f64 = 0.01;
 
 /// Meaning of the paper's `u`, the "incremental positional changes of the instrument within a time interval".
@@ -53,6 +54,7 @@ impl Recipe {
         let Scales { position_m, velocity_m_s, acceleration_m_s2, .. } = *scales;
         let squares = [position_m, velocity_m_s, acceleration_m_s2].map(|scale| scale * scale);
         let mut penalty = [0.0; MOTION_COLUMNS];
+        // Dividing a column by `s` multiplies its coefficient by `s`, so a ridge on it counts `s^2` times.
         let mut power = squares.map(|square| self.ridge * square);
         for triple in penalty.chunks_exact_mut(3) {
             triple.copy_from_slice(&power);
@@ -77,6 +79,7 @@ pub(super) struct NextDegree {
 impl NextDegree {
     pub(super) fn new(rate_hz: f64) -> Self {
         Self {
+            // At least one row, also at low rates.
             ticks: ((JUDGED_S * rate_hz).round() as usize).max(1),
             models: [LiteralModel::NONE; MAX_DEGREE],
             squares_n2: [0.0; MAX_DEGREE],
@@ -98,6 +101,7 @@ impl NextDegree {
             }
         }
         if self.waited >= self.ticks {
+            // Without one measured row there is nothing to choose by, so the degree stays.
             if self.judged > 0 {
                 self.degree = self.best();
             }
@@ -113,6 +117,7 @@ impl NextDegree {
     }
 
     fn best(&self) -> usize {
+        // A degree that was not solved has no error, not the smallest one.
         let known = |degree: &usize| self.models[degree - 1].degree > 0 && self.squares_n2[degree - 1].is_finite();
         let error = |degree: usize| self.squares_n2[degree - 1];
         (1..=MAX_DEGREE).filter(known).min_by(|&a, &b| error(a).total_cmp(&error(b))).unwrap_or(0)

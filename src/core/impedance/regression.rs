@@ -7,6 +7,7 @@ use super::{
 use crate::signal::{Lanes, settled};
 
 /// Memory of the regression (s). Half or twice any memory changes the mean error on recordings by less than 2 %.
+/// Longer than the longest delay (1 s), so that it contains changes over it.
 const MEMORY_S: f64 = 3.0;
 /// Ridges, in seconds of typical motion without a change of force. Each of the three lowers the mean error on recordings.
 const RIDGES_S: [f64; RIDGES] = [0.0003, 0.01, 0.3];
@@ -74,15 +75,18 @@ impl ImpedanceRegression {
         for (square, q) in self.mean_squares.iter_mut().zip(q) {
             *square = (*square + (*q * *q - *square) * fraction).settled();
         }
+        // With the newest parameters: a sample that they explain badly is an impact or a new tissue.
         let error_n = (change_n - predict(newest, q, REGRESSORS)).norm();
         let fraction = 1.0 / self.learnt.min(ERROR_S * self.rate_hz);
         self.mean_error_n = settled(self.mean_error_n + (error_n - self.mean_error_n) * fraction);
+        // About 1 / error, which approximates the least absolute error (see `matched/sums.rs`).
         let weight = if self.mean_error_n > 0.0 { 1.0 / (error_n / self.mean_error_n + FLATTEN) } else { 1.0 };
         accumulate(&mut self.gram, &mut self.right, q, change_n, Lanes::splat(weight), self.forget);
     }
 
     /// Solves for ridge `r`: the linear model and the full one.
     pub(super) fn solve(&mut self, r: usize) -> Solutions {
+        // In proportion to the column's mean square, so the ridge is the same in every unit.
         let ridge = self.mean_squares.map(|square| square * (RIDGES_S[r] * self.rate_hz));
         self.factor.renew(&mut self.gram, &mut self.right, &ridge);
         let mut found = [[Lanes::ZERO; REGRESSORS]; NESTED];

@@ -4,6 +4,7 @@ use super::settings::ImpedanceSettings;
 use crate::signal::{BANK, LANES, Lanes, LowPassBank};
 
 /// Shortest and longest time constants of the filter bank (s). Chosen as in `anchored.rs`.
+/// The four time constants are a factor of 4 apart: 5, 20, 80 and 320 ms.
 const BANK_S: [f64; 2] = [0.005, 0.32];
 /// Memory of the slow means: the motion's centre, the force's level, the size of the speed (s). Longer than
 /// the longest delay (1 s), so that the level at the anchor still describes the contact when the packet is rendered.
@@ -78,6 +79,7 @@ pub(super) fn position_bank(settings: &ImpedanceSettings) -> LowPassBank {
 /// Returns the fraction of a change that the low-pass with the bank's shortest time constant follows in one sample.
 pub(super) fn shortest_fraction(settings: &ImpedanceSettings) -> f64 {
     // `expm1`, because `1 - exp(x)` loses digits for the small `x` of a high rate.
+    // A loop slower than the time constant follows at most 63 %.
     -libm::expm1(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0))
 }
 
@@ -86,6 +88,7 @@ pub(super) fn shortest_fraction(settings: &ImpedanceSettings) -> f64 {
 pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
     // Smooth instead of a sign function, because the noise of a hand at rest would switch a sign in every sample.
     let size = u.map(f64::abs) + knee;
+    // Where neither moves nor has moved, 0 / 0 becomes 0.
     u * size.recip_or_zero()
 }
 
@@ -93,6 +96,7 @@ pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
 /// [position, four differences, friction, square, cube, product].
 #[inline]
 pub(super) fn motion_changes(now: &MotionState, then: &MotionState, centre: Lanes, knee: Lanes) -> [Lanes; 9] {
+    // About the slow centre: powers of a position far from zero would hide its changes in rounding.
     let a = now.x - centre;
     let b = then.x - centre;
     let [u0, u1, u2, u3] = std::array::from_fn(|j| now.u[j] - then.u[j]);
@@ -142,6 +146,7 @@ pub(super) struct BackgroundBuilder {
 impl BackgroundBuilder {
     pub(super) fn new(settings: &ImpedanceSettings) -> Self {
         Self {
+            // The same bank as for the motion, so that both trends have the same lags.
             force_bank: LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz),
             fraction: -libm::expm1(-1.0 / (SLOW_S * settings.rate_hz)),
             centre: Lanes::ZERO,
@@ -176,6 +181,7 @@ impl BackgroundBuilder {
             force_n,
             force_trend: std::array::from_fn(|j| bounded(force_trend[j], at::FORCE_TREND + j)),
             centre: self.centre,
+            // Half the mean size, like `MotionClock::knee_m`.
             knee: self.speed * 0.5,
             position_level: bounded(stance.x - self.centre, at::POSITION_LEVEL),
             force_level: bounded(force_n - self.force_level, at::FORCE_LEVEL),

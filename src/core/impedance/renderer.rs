@@ -52,6 +52,7 @@ impl Renderer {
         Ok(Self {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: MotionTrack::new(settings),
+            // Twice: the age of a packet may exceed the programmed delay by as much while the link is late.
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
             leaders: Leaders::new(settings),
             dampers: damped.map(|mode| (mode, Damper::new(settings.rate_hz))).collect(),
@@ -75,9 +76,11 @@ impl Renderer {
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
+            // The leaders keep a time without a force, so that their delay lines stay in step.
             self.leaders.each().for_each(|leader| leader.keep(&[None; SLOTS], 0.0));
             return RenderedForces::default();
         };
+        // A repeated or older packet is waiting time: its motion is no longer the newest at the other end.
         if parcel.t_s > self.parcel_t_s {
             self.parcel_t_s = parcel.t_s;
             self.waiting = 0;
@@ -90,10 +93,12 @@ impl Renderer {
         let mut forces = self.leaders.render(parcel, [&now, then], &x, age);
         for leader in self.leaders.each() {
             leader.keep(&forces, now.stance.pace);
+            // Judged once per packet: a repeated one would count the same error again.
             if self.waiting == 0 {
                 leader.judge(parcel, age);
             }
         }
+        // After all modes are rendered, so that mixtures use undamped forces.
         for (mode, damper) in &mut self.dampers {
             let force_n = &mut forces[mode.index()];
             *force_n = force_n.map(|force_n| damper.step(&now.stance, force_n));

@@ -9,6 +9,7 @@ use crate::{
 };
 
 /// Maximum programmed delay of the link (s), for which the ring buffers have room.
+/// The same limit as a command's, so that no setting can ask for more than the buffers hold.
 pub const MAX_DELAY_S: f64 = DELAY_S.max;
 
 /// The modes to compute; the others cost nothing.
@@ -142,6 +143,7 @@ impl Default for ImpedanceSettings {
             cross_talk: false,
             own_motion: OwnMotion::default(),
             differentiator: DifferentiatorKind::default(),
+            // Design choice: far above the rounding of a window, far below the motion of a working hand.
             ridge: 1e-6,
             literal: Recipe::default(),
         }
@@ -167,6 +169,7 @@ impl ImpedanceSettings {
             return Err(E::Rate { rate_hz: self.rate_hz });
         }
         let samples = (self.window_s * self.rate_hz).round();
+        // In samples: both the memory and the cost of a tick depend on their number.
         if !WINDOW_SAMPLES.contains(samples) {
             return Err(E::Window { window_s: self.window_s, samples });
         }
@@ -208,11 +211,13 @@ impl ImpedanceSettings {
 
     /// Returns the number of rows in half a window (a window consists of two blocks, so its length is even).
     pub(super) fn block(&self) -> usize {
+        // Half of the fewest samples that a window may have (`WINDOW_SAMPLES`).
         ((self.window_s * self.rate_hz / 2.0).round() as usize).max(5)
     }
 
     /// Returns the programmed delay in samples, at most [`MAX_DELAY_S`].
     pub fn delay_ticks(&self, delay_s: f64) -> usize {
+        // An unknown delay must not index a buffer; zero renders the newest packet.
         let delay_s = if delay_s.is_finite() { delay_s.clamp(DELAY_S.min, DELAY_S.max) } else { 0.0 };
         (delay_s * self.rate_hz).round() as usize
     }

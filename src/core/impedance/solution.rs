@@ -51,6 +51,7 @@ impl ImpedanceSolution {
         let right = factor.column(factor.columns());
         for j in 0..n {
             let r = factor.column(j);
+            // A zero diagonal gives a zero coefficient: the column has no information.
             let diagonal = r[j].recip_or_zero();
             let start = column_start(j);
             // Column j of W is -W_jj * (W_0..j R_0..j,j); four rows at a time, zeros below the diagonal of W included.
@@ -63,7 +64,9 @@ impl ImpedanceSolution {
             self.inverse[j][j] = diagonal;
             for (i, product) in self.products[start..=start + j].iter_mut().enumerate() {
                 let w = self.inverse[i][j];
+                // Products instead of coefficients: every prefix is then a partial sum.
                 *product = w * right[j];
+                // The Frobenius norms of all prefixes come for free from the running sums.
                 norm += r[i] * r[i];
                 inverse_norm += w * w;
             }
@@ -71,6 +74,7 @@ impl ImpedanceSolution {
         }
         let mut squares = right[n] * right[n];
         self.squares[n] = squares;
+        // From the last column backwards: each prefix leaves the later entries as residual.
         for j in (0..n).rev() {
             squares += right[j] * right[j];
             self.squares[j] = squares;

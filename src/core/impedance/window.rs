@@ -60,6 +60,7 @@ impl<S: WindowSummary> SlidingWindow<S> {
             this_half_first: true,
             endings: vec![empty.clone(); block],
             upwards: true,
+            // Starts as if full blocks of nothing came before; `is_full` reports the difference.
             position: 0,
             completed: 0,
             since_last_block: prior.clone(),
@@ -102,6 +103,7 @@ impl<S: WindowSummary> SlidingWindow<S> {
         let p = self.position;
         let (this, last) = if self.this_half_first { (0, b) } else { (b, 0) };
         self.rows[this + p] = *row;
+        // Its last row first, so that each step adds one older row to the ending.
         let backward_row = self.rows[last + b - 1 - p];
         S::add_three(
             [&mut self.since_last_block, &mut self.since_this_block, &mut self.backwards],
@@ -110,7 +112,9 @@ impl<S: WindowSummary> SlidingWindow<S> {
         if wanted {
             self.current.clone_from(&self.since_last_block);
         }
+        // The last tick of a block needs no ending: the two blocks are then complete.
         if p + 1 < b {
+            // Alternating direction: the slot just read is the one to overwrite.
             let slot = if self.upwards { p } else { b - 2 - p };
             if wanted && self.completed >= 2 {
                 self.current.merge(&mut self.endings[slot]);
@@ -128,6 +132,7 @@ impl<S: WindowSummary> SlidingWindow<S> {
         self.completed = (self.completed + 1).min(2);
         self.this_half_first = !self.this_half_first;
         self.upwards = !self.upwards;
+        // The running summary of this block becomes that of the last one; nothing is summed again.
         self.since_last_block.clone_from(&self.since_this_block);
         self.since_this_block.clone_from(&self.prior);
         self.backwards.clone_from(&self.empty);

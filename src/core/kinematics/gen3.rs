@@ -1,15 +1,10 @@
-//! The chain of the Kinova Gen3 with seven joints and spherical wrist: constants, forward kinematics, Jacobian.
+//! The chain of the Kinova Gen3 with seven joints and spherical wrist.
 //!
 //! Angles in rad, lengths in m, in the frame the base is mounted in. Constants from `ros2_kortex`
 //! (`kortex_description/arms/gen3/7dof/urdf/gen3_macro.xacro`, BSD-3-Clause), with exact right angles where that file
-//! rounds them. Nothing is checked here: a joint angle that is not finite gives a pose that is not finite.
+//! rounds them.
 
-use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3};
-
-pub const JOINTS: usize = 7;
-
-/// One number per joint, from the base to the flange.
-pub type Joints = SVector<f64, JOINTS>;
+use super::arm_model::{ArmModel, JOINTS, LinkTurn};
 
 /// Maximum speed of each joint, rad/s: 80 and 70 degrees per second (`gen3_macro.xacro`, `velocity`).
 pub const SPEED_RAD_S: [f64; JOINTS] = [1.3963, 1.3963, 1.3963, 1.3963, 1.2218, 1.2218, 1.2218];
@@ -21,32 +16,15 @@ pub const ACCELERATION_RAD_S2: [f64; JOINTS] = [4.94, 4.94, 4.94, 4.94, 9.5, 9.5
 pub const LIMIT_RAD: [f64; JOINTS] = [f64::INFINITY, 2.24, f64::INFINITY, 2.57, f64::INFINITY, 2.09, f64::INFINITY];
 
 /// Height of the shoulder (joint 2) above the base, m (`gen3_macro.xacro`: base to joint 1, plus joint 1 to joint 2).
-pub(super) const SHOULDER_M: f64 = 0.284_81;
+const SHOULDER_M: f64 = 0.284_81;
 /// Maximum distance of the flange from the shoulder, m: the sum of the links in a straight line, plus 2 mm because the
 /// joints are not exactly on one line.
-pub(super) const REACH_M: f64 = 0.420_76 + 0.314_36 + 0.167_455 + 0.002;
-
-#[derive(Clone, Copy)]
-enum LinkTurn {
-    Half,
-    Quarter,
-    QuarterBack,
-}
-
-impl LinkTurn {
-    /// Returns `rotation * Rx(angle)`, exact because only columns and signs are swapped.
-    fn after(self, rotation: &Matrix3<f64>) -> Matrix3<f64> {
-        let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
-        match self {
-            Self::Half => Matrix3::from_columns(&[x, -y, -z]),
-            Self::Quarter => Matrix3::from_columns(&[x, z, -y]),
-            Self::QuarterBack => Matrix3::from_columns(&[x, -z, y]),
-        }
-    }
-}
+/// The three links are `d` of joints 3, 5 and 7 in Kinova's DH table.
+const REACH_M: f64 = 0.420_76 + 0.314_36 + 0.167_455 + 0.002;
 
 /// From each joint to the next: translation (m) in the frame of the previous one, then rotation. The last one is the
 /// flange.
+/// From the URDF with exact quarter turns instead of its 1.5708, so that errors of 4e-6 rad per joint do not add up.
 const LINKS: [([f64; 3], LinkTurn); JOINTS + 1] = [
     ([0.0, 0.0, 0.156_43], LinkTurn::Half),
     ([0.0, 0.005_375, -0.128_38], LinkTurn::Quarter),
@@ -58,86 +36,42 @@ const LINKS: [([f64; 3], LinkTurn); JOINTS + 1] = [
     ([0.0, 0.0, -0.061_525], LinkTurn::Half),
 ];
 
-/// Positions and axes of all joints for one set of joint angles, in the frame `world` in which the base is mounted.
-#[derive(Clone, Copy, Debug)]
-pub struct JointChain {
-    /// A point on each joint's axis, m.
-    pub origin_m: [Vector3<f64>; JOINTS],
-    /// Axis of each joint, unit length; positive angles are right-handed about it.
-    pub axis: [Vector3<f64>; JOINTS],
-    /// The flange (the manufacturer's tool frame); z points away from the arm.
-    pub world_from_flange: IsometryMatrix3<f64>,
+const fn lowest(high_rad: [f64; JOINTS]) -> [f64; JOINTS] {
+    let mut low_rad = high_rad;
+    let mut joint = 0;
+    while joint < JOINTS {
+        low_rad[joint] = -high_rad[joint];
+        joint += 1;
+    }
+    low_rad
 }
 
-impl JointChain {
-    /// Computes the forward kinematics of an arm with its base at `world_from_base`.
-    pub fn new(world_from_base: &IsometryMatrix3<f64>, joint_rad: &Joints) -> Self {
-        let mut rotation = *world_from_base.rotation.matrix();
-        let mut place_m = world_from_base.translation.vector;
-        let mut origin_m = [Vector3::zeros(); JOINTS];
-        let mut axis = [Vector3::zeros(); JOINTS];
-        for (i, (shift_m, turn)) in LINKS.iter().enumerate() {
-            place_m += rotation * Vector3::from(*shift_m);
-            rotation = turn.after(&rotation);
-            if i == JOINTS {
-                break;
-            }
-            origin_m[i] = place_m;
-            axis[i] = rotation.column(2).into_owned();
-            rotation = turned_about_z(&rotation, joint_rad[i]);
-        }
-        let rotation = Rotation3::from_matrix_unchecked(rotation);
-        Self { origin_m, axis, world_from_flange: IsometryMatrix3::from_parts(Translation3::from(place_m), rotation) }
-    }
-
-    /// Returns the velocity (m/s) of a point (m) that is fixed to the flange, per rad/s of one joint.
-    pub fn point_per_joint(&self, joint: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
-        self.axis[joint].cross(&(point_m - self.origin_m[joint]))
-    }
-
-    /// Returns the geometric Jacobian of a point (m) fixed to the flange: rows velocity (m/s) and angular velocity
-    /// (rad/s), in `world`.
-    pub fn jacobian(&self, point_m: &Vector3<f64>) -> SMatrix<f64, 6, JOINTS> {
-        let mut jacobian = SMatrix::<f64, 6, JOINTS>::zeros();
-        for joint in 0..JOINTS {
-            jacobian.fixed_view_mut::<3, 1>(0, joint).copy_from(&self.point_per_joint(joint, point_m));
-            jacobian.fixed_view_mut::<3, 1>(3, joint).copy_from(&self.axis[joint]);
-        }
-        jacobian
-    }
-}
-
-/// Returns `rotation * Rz(angle)`.
-fn turned_about_z(rotation: &Matrix3<f64>, angle_rad: f64) -> Matrix3<f64> {
-    let (sin, cos) = libm::sincos(angle_rad);
-    let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
-    Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, z])
-}
-
-/// Returns the smallest distance of a joint from its limit, rad; negative beyond it.
-///
-/// ```
-/// use nima_core::kinematics::{Joints, LIMIT_RAD, limit_margin_rad};
-///
-/// let mut joints = Joints::zeros();
-/// assert!(limit_margin_rad(&joints) > 0.0);
-/// joints[1] = LIMIT_RAD[1] + 0.1;
-/// assert!((limit_margin_rad(&joints) + 0.1).abs() < 1e-12, "negative beyond a limit");
-/// ```
-pub fn limit_margin_rad(joint_rad: &Joints) -> f64 {
-    joint_rad.iter().zip(LIMIT_RAD).map(|(q, limit)| limit - q.abs()).fold(f64::INFINITY, f64::min)
+impl ArmModel {
+    /// The Kinova Gen3 with seven joints.
+    pub const GEN3: Self = Self {
+        joints: JOINTS,
+        links: LINKS,
+        low_rad: lowest(LIMIT_RAD),
+        high_rad: LIMIT_RAD,
+        speed_rad_s: SPEED_RAD_S,
+        acceleration_rad_s2: ACCELERATION_RAD_S2,
+        high_joints: [3, 5],
+        shoulder_m: [0.0, 0.0, SHOULDER_M],
+        reach_m: REACH_M,
+    };
 }
 
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use nalgebra::Isometry3;
+    use nalgebra::{Isometry3, IsometryMatrix3, Matrix3, Vector3};
 
     use super::*;
+    use crate::kinematics::{JointChain, Joints};
 
     fn flange(joint_rad: &Joints) -> IsometryMatrix3<f64> {
-        JointChain::new(&IsometryMatrix3::identity(), joint_rad).world_from_flange
+        JointChain::new(&ArmModel::GEN3, &IsometryMatrix3::identity(), joint_rad).world_from_flange
     }
 
     fn random_joints() -> Joints {
@@ -192,7 +126,7 @@ mod tests {
         let mount = IsometryMatrix3::new(Vector3::new(0.3, -0.2, 0.1), Vector3::new(0.4, 0.3, -1.0));
         for _ in 0..50 {
             let joint_rad = random_joints();
-            let chain = JointChain::new(&mount, &joint_rad);
+            let chain = JointChain::new(&ArmModel::GEN3, &mount, &joint_rad);
             let on_flange_m = Vector3::new(0.02, -0.01, 0.4);
             let point_m = chain.world_from_flange * nalgebra::Point3::from(on_flange_m);
             let jacobian = chain.jacobian(&point_m.coords);
@@ -200,7 +134,7 @@ mod tests {
                 let at = |step: f64| {
                     let mut moved = joint_rad;
                     moved[joint] += step;
-                    JointChain::new(&mount, &moved).world_from_flange
+                    JointChain::new(&ArmModel::GEN3, &mount, &moved).world_from_flange
                 };
                 let before = at(-H);
                 let after = at(H);

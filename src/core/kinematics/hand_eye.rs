@@ -55,7 +55,7 @@ pub struct MotionMapping {
 }
 
 impl Default for MotionMapping {
-    /// Creates the leader's axes coincide with the workspace axes; scale 1.
+    /// Creates a mapping in which the leader's axes coincide with the workspace axes; scale 1.
     fn default() -> Self {
         Self { world_from_leader: UnitQuaternion::identity(), scale: 1.0 }
     }

@@ -7,7 +7,10 @@ use nalgebra::{IsometryMatrix3, Rotation3, Translation3, UnitQuaternion, Vector3
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::gen3::{JointChain, Joints};
+use super::{
+    arm_model::{ArmModel, ArmModelError},
+    joint_chain::{JointChain, Joints},
+};
 use crate::{frames::from_roll_pitch_yaw_deg, units};
 
 /// Mounting of the arm and geometry of its instrument. All values are measured on the rig, so there are no defaults.
@@ -46,6 +49,10 @@ pub enum ArmError {
         units::length_remedy(*.shaft_m, SHAFT_MAX_M)
     )]
     ShaftLength { shaft_m: f64 },
+    #[error("the joints of the arm are not known: load the rig from its file")]
+    NoModel,
+    #[error(transparent)]
+    Model(#[from] ArmModelError),
 }
 
 /// An arm with its instrument.
@@ -64,13 +71,14 @@ pub enum ArmError {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Arm {
+    model: ArmModel,
     world_from_base: IsometryMatrix3<f64>,
     flange_from_s1: IsometryMatrix3<f64>,
     shaft_m: f64,
 }
 
 impl Arm {
-    /// Creates an arm from checked settings.
+    /// Creates a Gen3 with seven joints from checked settings.
     ///
     /// # Errors
     /// [`ArmError`] if a number is not finite, or no plausible length in m.
@@ -93,10 +101,21 @@ impl Arm {
             return Err(ArmError::ShaftLength { shaft_m: *shaft_m });
         }
         Ok(Self {
+            model: ArmModel::GEN3,
             world_from_base: isometry(base_m, base_deg),
             flange_from_s1: isometry(sensor_m, sensor_deg),
             shaft_m: *shaft_m,
         })
+    }
+
+    /// Replaces the Gen3 by another arm in the same mounting.
+    #[must_use]
+    pub const fn of_model(self, model: ArmModel) -> Self {
+        Self { model, ..self }
+    }
+
+    pub const fn model(&self) -> &ArmModel {
+        &self.model
     }
 
     /// Returns the distance from the sensor to the tip, m.
@@ -114,7 +133,7 @@ impl Arm {
 
     /// Returns the pose of arm and instrument for these joint angles (rad).
     pub fn pose(&self, joint_rad: &Joints) -> InstrumentPose {
-        let chain = JointChain::new(&self.world_from_base, joint_rad);
+        let chain = JointChain::new(&self.model, &self.world_from_base, joint_rad);
         let world_from_s1 = chain.world_from_flange * self.flange_from_s1;
         let axis = |i: usize| world_from_s1.rotation.matrix().column(i).into_owned();
         let direction = axis(2);

@@ -9,8 +9,9 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::{
-    gen3::{JOINTS, Joints, LIMIT_RAD, limit_margin_rad},
+    arm_model::JOINTS,
     instrument::{Arm, InstrumentPose},
+    joint_chain::Joints,
     limits::JointLimits,
     posture,
     rcm::{Rcm, RcmCorrection, RcmShaft},
@@ -30,17 +31,22 @@ pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
 /// Distance that joints keep from their limits, rad, so that an overshooting drive does not report a fault.
 pub const KEEP_OFF_RAD: f64 = 0.02;
 /// Near a limit, the speed of a joint is at most this factor times its distance from the limit, 1/s. Design choice.
+/// 20 per second: the last 0.07 rad before a limit are slowed down (1.4 rad/s over 20/s).
 const APPROACH_PER_S: f64 = 20.0;
 /// Fraction of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of
 /// the path.
+/// Larger values leave the curvature of the path without acceleration, smaller ones start to brake earlier.
 const BRAKING_FRACTION: f64 = 0.5;
 /// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
+/// Longer averages make the tip lag behind a moving target, shorter ones follow the steps of the handle's encoder.
 const TARGET_MOTION_S: f64 = 0.005;
 /// Speed of the posture optimisation along the gradient, rad/s, and the fraction of the joint speed that it may use.
 /// Design choice.
+/// Larger values move the elbow visibly while the tip rests; smaller ones leave a posture near a limit for longer.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_FRACTION: f64 = 0.2;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
+/// A larger miss is a wrong trocar or a wrong calibration, which the correction must not pull straight.
 pub const START_MISS_M: f64 = 5e-3;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +132,7 @@ impl Inverse {
         if arm.shaft_m() <= insertion_max_m {
             return Err(ArmStartError::ShortShaft { shaft_m: arm.shaft_m(), insertion_max_m });
         }
-        check_joints(joint_rad)?;
+        check_joints(arm.model(), joint_rad)?;
         let pose = arm.pose(joint_rad);
         let trocar_m = rcm.settings().trocar_m;
         let miss_m = pose.axis_miss_m(&trocar_m).norm();
@@ -141,7 +147,7 @@ impl Inverse {
             arm,
             rcm,
             period_s,
-            limits: JointLimits::speed_only(),
+            limits: JointLimits::speed_only(arm.model()),
             change_rad: Joints::repeat(f64::INFINITY),
             joint_rad: *joint_rad,
             pose,
@@ -184,7 +190,7 @@ impl Inverse {
 
     /// Returns the height of elbow and wrist above the trocar, m.
     pub fn clearance_m(&self) -> f64 {
-        posture::clearance_m(&self.pose, &self.rcm)
+        posture::clearance_m(self.arm.model(), &self.pose, &self.rcm)
     }
 
     /// Advances by one period towards a tip position (m, `world`).
@@ -222,7 +228,7 @@ impl Inverse {
     /// Returns the components of the step; `None` if they cannot be computed, in which case the arm holds.
     fn solve(&mut self, wish: &MotionRequest) -> Option<StepParts> {
         let task = VelocityTask::new(&self.pose, &self.rcm.settings().trocar_m);
-        let parts = task.solve(wish, &posture::freedom(&self.joint_rad));
+        let parts = task.solve(wish, &posture::freedom(self.arm.model(), &self.joint_rad));
         match &parts {
             Some(parts) => self.dexterity = parts.dexterity,
             None => self.moved_rad = Joints::zeros(),
@@ -316,8 +322,9 @@ impl Inverse {
 
     /// Returns the distance of each joint from both ends of its usable range, rad; negative beyond them.
     fn room_rad(&self) -> [Joints; 2] {
-        let limit_rad = Joints::from(LIMIT_RAD).add_scalar(-KEEP_OFF_RAD);
-        [limit_rad + self.joint_rad, limit_rad - self.joint_rad]
+        let low_rad = self.limits.low_rad.add_scalar(KEEP_OFF_RAD);
+        let high_rad = self.limits.high_rad.add_scalar(-KEEP_OFF_RAD);
+        [self.joint_rad - low_rad, high_rad - self.joint_rad]
     }
 
     /// Returns the smallest and largest change of each joint in this period, rad: limited by its speed, by the distance
@@ -344,7 +351,7 @@ impl Inverse {
         let measures = PoseQuality {
             axis_miss_m: self.pose.axis_miss_m(&self.rcm.settings().trocar_m).norm(),
             tip_miss_m: goal.map_or(f64::NAN, |goal| (self.rcm.tip_m(goal) - self.pose.tip_m).norm()),
-            limit_margin_rad: limit_margin_rad(&self.joint_rad),
+            limit_margin_rad: self.arm.model().limit_margin_rad(&self.joint_rad),
             dexterity: self.dexterity,
             granted,
         };

@@ -4,18 +4,24 @@
 //! Only the inverse kinematics may slow the joints down. Slowing a single joint would take the shaft out of the trocar:
 //! all joints must be slowed along the same path, which only the inverse kinematics can compute.
 
-use super::gen3::{ACCELERATION_RAD_S2, JOINTS, Joints, SPEED_RAD_S};
+use super::{
+    arm_model::{ArmModel, JOINTS},
+    joint_chain::Joints,
+};
 
-/// Limits of every joint. The ranges are [`LIMIT_RAD`](super::LIMIT_RAD).
+/// Limits of every joint.
 ///
 /// ```
-/// use nima_core::kinematics::JointLimits;
+/// use nima_core::kinematics::{ArmModel, JointLimits};
 ///
-/// let (half, full) = (JointLimits::of_arm(0.5, 0.1), JointLimits::of_arm(1.0, 0.1));
+/// let [half, full] = [0.5, 1.0].map(|fraction| JointLimits::of_arm(&ArmModel::GEN3, fraction, 0.1));
 /// assert!((half.braking_s() - 0.5 * full.braking_s()).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimits {
+    /// Lowest and highest angle, rad; infinite for a joint that turns without end.
+    pub low_rad: Joints,
+    pub high_rad: Joints,
     pub speed_rad_s: Joints,
     /// Largest acceleration, rad/s^2; infinite if only the path matters.
     pub acceleration_rad_s2: Joints,
@@ -25,19 +31,18 @@ pub struct JointLimits {
 
 impl JointLimits {
     /// Returns only the speed limits of the arm, for the search of poses.
-    pub fn speed_only() -> Self {
-        Self {
-            speed_rad_s: Joints::from(SPEED_RAD_S),
-            acceleration_rad_s2: Joints::repeat(f64::INFINITY),
-            lead_rad: f64::INFINITY,
-        }
+    pub fn speed_only(model: &ArmModel) -> Self {
+        let acceleration_rad_s2 = Joints::repeat(f64::INFINITY);
+        Self { acceleration_rad_s2, ..Self::of_arm(model, 1.0, f64::INFINITY) }
     }
 
     /// Returns the limits of an arm that may use this fraction of its speed, above 0 to 1.
-    pub fn of_arm(speed_fraction: f64, lead_rad: f64) -> Self {
+    pub fn of_arm(model: &ArmModel, speed_fraction: f64, lead_rad: f64) -> Self {
         Self {
-            speed_rad_s: Joints::from(SPEED_RAD_S) * speed_fraction.clamp(0.0, 1.0),
-            acceleration_rad_s2: Joints::from(ACCELERATION_RAD_S2),
+            low_rad: Joints::from(model.low_rad),
+            high_rad: Joints::from(model.high_rad),
+            speed_rad_s: Joints::from(model.speed_rad_s) * speed_fraction.clamp(0.0, 1.0),
+            acceleration_rad_s2: Joints::from(model.acceleration_rad_s2),
             lead_rad,
         }
     }

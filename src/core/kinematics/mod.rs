@@ -1,4 +1,4 @@
-//! From the hand to the arm's joints: hand-eye mapping, remote centre of motion, Kinova Gen3.
+//! From the hand to the arm's joints: hand-eye mapping, remote centre of motion, model of the arm.
 //!
 //! Takes the hand's pose (m, in the leader's frame) and the measured joint angles (rad); returns commanded joint angles
 //! (rad), one step per tick, with the shaft through the trocar. Lengths in m, angles in rad, everything in the
@@ -9,10 +9,12 @@
 //! `HandEyeCoupling::step` → target of the tip → `Inverse::step` → joint angles. To start: find a pose with [`find`], move
 //! there, then call `Inverse::new`.
 
+mod arm_model;
 mod gen3;
 mod hand_eye;
 mod instrument;
 mod inverse;
+mod joint_chain;
 mod limits;
 mod posture;
 mod rcm;
@@ -24,12 +26,14 @@ mod tests;
 mod velocity;
 mod wrist;
 
-pub use gen3::{ACCELERATION_RAD_S2, JOINTS, JointChain, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad};
+pub use arm_model::{ArmChain, ArmModel, ArmModelError, ChainJoint, JOINTS};
+pub use gen3::{ACCELERATION_RAD_S2, LIMIT_RAD, SPEED_RAD_S};
 pub use hand_eye::{
     HandEyeCoupling, HandPose, MotionMapping, MotionMappingError, TipTarget, view_from_omega, world_from_tracked_view,
 };
 pub use instrument::{Arm, ArmError, ArmSettings, InstrumentPose};
 pub use inverse::{Inverse, InverseStep, KEEP_OFF_RAD, PoseQuality, START_MISS_M};
+pub use joint_chain::{JointChain, Joints};
 pub use limits::JointLimits;
 pub use rcm::{Rcm, RcmCorrection, RcmError, RcmSettings, RcmShaft};
 pub use start::ArmStartError;

@@ -100,6 +100,7 @@ pub struct Rcm {
 
 /// A position closer to the trocar than this defines no direction, m. Below it only rounding would decide the
 /// direction.
+/// A nanometre: far below what any encoder resolves.
 const POINT_M: f64 = 1e-9;
 
 /// Maximum distance of a trocar from the origin of the workspace, m.

@@ -1,7 +1,7 @@
 //! Computes how much of a planned step may be taken, given the acceleration limits of the joints. One factor applies to
 //! all joints, so that the shaft stays in the trocar. Steps are in rad per period.
 
-use super::gen3::{JOINTS, Joints};
+use super::{arm_model::JOINTS, joint_chain::Joints};
 
 /// Returns the largest first step on a path of length `way` (in the same unit) that still leaves room to stop, when
 /// each period may reduce the step by `braking`: `v^2 / 2a + v = way`. Without a limit on braking it is the whole path.

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-use super::gen3::{Joints, LIMIT_RAD};
+use super::{arm_model::ArmModel, joint_chain::Joints};
 
 /// Reason why the inverse kinematics cannot start from the arm's current joint angles.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -37,12 +37,14 @@ pub enum ArmStartError {
 }
 
 /// Checks that every angle is finite and within its range.
-pub(super) fn check_joints(joint_rad: &Joints) -> Result<(), ArmStartError> {
-    for (i, (angle, limit)) in joint_rad.iter().zip(LIMIT_RAD).enumerate() {
+pub(super) fn check_joints(model: &ArmModel, joint_rad: &Joints) -> Result<(), ArmStartError> {
+    for (i, angle) in joint_rad.iter().enumerate().take(model.joints) {
         if !angle.is_finite() {
             return Err(ArmStartError::NotFinite { joint: i + 1 });
         }
-        if angle.abs() >= limit {
+        if model.margin_rad(i, *angle) <= 0.0 {
+            let [low_rad, high_rad] = model.range_rad(i);
+            let limit = if *angle >= high_rad { high_rad } else { low_rad };
             return Err(ArmStartError::AtLimit {
                 joint: i + 1,
                 angle_deg: angle.to_degrees(),

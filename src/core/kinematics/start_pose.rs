@@ -5,15 +5,15 @@
 //! the permitted space that the arm can reach from there while engaged, or the reason why the position cannot be
 //! reached. Deterministic.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use nalgebra::{Point3, Vector3};
 use thiserror::Error;
 
 use super::{
-    gen3::{JOINTS, Joints, LIMIT_RAD, REACH_M, SHOULDER_M, limit_margin_rad},
     instrument::Arm,
     inverse::{Inverse, PoseQuality},
+    joint_chain::Joints,
     posture,
     rcm::{Rcm, RcmError, RcmShaft},
     start::ArmStartError,
@@ -22,20 +22,25 @@ use super::{
 
 /// Random starts of the search. Many, because an arm with seven joints has many poses for one tip, and Newton's method
 /// finds the nearest of them only.
+/// Runs once, when a rig is set up, so its time matters less than a missed pose.
 const STARTS: usize = 600;
 /// Newton steps from each start.
+/// A start that has not converged by then is given up; others follow.
 const STEPS: usize = 80;
 /// Number of poses that are tested over the permitted space, because each test moves the arm over the whole space,
 /// which takes most of the time.
+/// Sorted by `ease` before, so that the best poses are among the tested ones.
 const CANDIDATES: usize = 8;
 /// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Design choice.
 const MIN_MARGIN_RAD: f64 = 0.1;
 /// See [`MIN_MARGIN_RAD`].
+/// The threshold of damping in the loop (`DAMPED_BELOW`): beyond it the loop follows exactly.
 const MIN_DEXTERITY: f64 = 0.05;
 /// Period of the test motions, s: longer than the loop's period to save time, still short enough to keep the shaft in
 /// the trocar.
 const TRY_PERIOD_S: f64 = 0.004;
 /// Distance from the goal at which the tip has arrived, m.
+/// A tenth of a millimetre: below the calibration errors of an arm, above the rest of a numerical approach.
 const ARRIVED_M: f64 = 1e-4;
 /// Time limit for one goal of the test, periods: 6 s at [`TRY_PERIOD_S`], enough to cross the permitted space several
 /// times at the speed limit of the tip.
@@ -45,7 +50,7 @@ const AROUND: usize = 8;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Ready {
-    /// Joint angles, rad, each within half a turn of zero.
+    /// Joint angles, rad, each within half a turn of the middle of its range.
     pub joint_rad: Joints,
     /// Fraction of the tested goals (edge and middle of the cone, at minimum and maximum insertion) that can be reached
     /// from here.
@@ -122,14 +127,16 @@ fn ease(limit_margin_rad: f64, dexterity: f64, clearance_m: f64) -> f64 {
 /// Checks that the flange can be reached: it lies on a circle about the shaft's axis (its rotation is free), part of
 /// which must be within the arm's reach.
 fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> Result<(), ReadyError> {
-    let shoulder_m = (arm.world_from_base() * Point3::new(0.0, 0.0, SHOULDER_M)).coords;
+    let shoulder_m = (arm.world_from_base() * Point3::from(arm.model().shoulder_m)).coords;
     let s1_from_flange = arm.flange_from_s1().inverse().translation.vector;
     let centre_m = tip_m + shaft.direction * (s1_from_flange.z - arm.shaft_m());
     let needed_m = (centre_m - shoulder_m).norm() - s1_from_flange.xy().norm();
-    if needed_m > REACH_M { Err(ReadyError::TooFar { needed_m, reach_m: REACH_M }) } else { Ok(()) }
+    let reach_m = arm.model().reach_m;
+    if needed_m > reach_m { Err(ReadyError::TooFar { needed_m, reach_m }) } else { Ok(()) }
 }
 
 fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> Result<Vec<Joints>, ReadyError> {
+    let model = arm.model();
     let mut random = fastrand::Rng::with_seed(0x6e33);
     let mut good: Vec<(f64, Joints)> = Vec::new();
     let mut found = 0;
@@ -138,7 +145,7 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> R
     let mut low = 0;
     let mut best_miss_m = f64::INFINITY;
     for _ in 0..STARTS {
-        let start = Joints::from_fn(|joint, _| (2.0 * random.f64() - 1.0) * LIMIT_RAD[joint].min(PI));
+        let start = model.within_ranges(|| 2.0 * random.f64() - 1.0);
         let (joint_rad, miss_m) = converged(arm, tip_m, shaft, start);
         best_miss_m = best_miss_m.min(miss_m);
         if miss_m > 1e-9 {
@@ -146,8 +153,8 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> R
         }
         found += 1;
         let pose = arm.pose(&joint_rad);
-        let margin_rad = limit_margin_rad(&joint_rad);
-        let clearance_m = posture::clearance_m(&pose, rcm);
+        let margin_rad = model.limit_margin_rad(&joint_rad);
+        let clearance_m = posture::clearance_m(model, &pose, rcm);
         let dexterity = dexterity(arm, rcm, &joint_rad);
         if margin_rad < MIN_MARGIN_RAD {
             at_limits += 1;
@@ -168,7 +175,9 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> R
     good.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut distinct: Vec<Joints> = Vec::new();
     for (_, joint_rad) in good {
-        if distinct.len() < CANDIDATES && distinct.iter().all(|other| apart_rad(other, &joint_rad) > 0.5) {
+        if distinct.len() < CANDIDATES
+            && distinct.iter().all(|other| apart_rad(model.joints(), other, &joint_rad) > 0.5)
+        {
             distinct.push(joint_rad);
         }
     }
@@ -177,16 +186,16 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &RcmShaft) -> R
 
 /// Returns the largest difference of any joint along the shorter direction, excluding the last joint, which mainly
 /// rotates the shaft about its own axis.
-fn apart_rad(a: &Joints, b: &Joints) -> f64 {
-    (a - b).iter().take(JOINTS - 1).map(|difference| wrapped(*difference).abs()).fold(0.0, f64::max)
+fn apart_rad(joints: usize, a: &Joints, b: &Joints) -> f64 {
+    (a - b).iter().take(joints - 1).map(|difference| wrapped(*difference).abs()).fold(0.0, f64::max)
 }
 
 fn wrapped(angle_rad: f64) -> f64 {
     angle_rad - TAU * (angle_rad / TAU).round()
 }
 
-/// Newton's method from a random start; returns joint angles within half a turn of zero, and the remaining error of tip
-/// and direction, m.
+/// Newton's method from a random start; returns joint angles within half a turn of the middles of their ranges, and the
+/// remaining error of tip and direction, m.
 fn converged(arm: &Arm, tip_m: &Vector3<f64>, shaft: &RcmShaft, start_rad: Joints) -> (Joints, f64) {
     let mut joint_rad = start_rad;
     let mut left_m = f64::INFINITY;
@@ -198,12 +207,13 @@ fn converged(arm: &Arm, tip_m: &Vector3<f64>, shaft: &RcmShaft, start_rad: Joint
         }
         joint_rad += step_rad * (0.4 / step_rad.amax().max(0.4));
     }
-    (joint_rad.map(wrapped), left_m)
+    (arm.model().wrapped(&joint_rad), left_m)
 }
 
 fn dexterity(arm: &Arm, rcm: &Rcm, joint_rad: &Joints) -> f64 {
     let task = VelocityTask::new(&arm.pose(joint_rad), &rcm.settings().trocar_m);
-    task.solve(&MotionRequest::default(), &posture::freedom(joint_rad)).map_or(0.0, |parts| parts.dexterity)
+    task.solve(&MotionRequest::default(), &posture::freedom(arm.model(), joint_rad))
+        .map_or(0.0, |parts| parts.dexterity)
 }
 
 /// Lets a pose settle, then moves from it to goals in the whole permitted space and back.
@@ -212,7 +222,7 @@ fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Resu
     for _ in 0..TRY_PERIODS {
         settled.step(tip_m);
     }
-    let start_rad = settled.joint_rad().map(wrapped);
+    let start_rad = arm.model().wrapped(settled.joint_rad());
     let mut ready = Ready {
         joint_rad: start_rad,
         reached: 0.0,

@@ -12,10 +12,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SymmetricEigen, Vector2, Vector3};
 
-use super::{
-    gen3::{JOINTS, Joints},
-    instrument::InstrumentPose,
-};
+use super::{arm_model::JOINTS, instrument::InstrumentPose, joint_chain::Joints};
 
 type Rows2 = SMatrix<f64, 2, JOINTS>;
 type Rows3 = SMatrix<f64, 3, JOINTS>;
@@ -24,9 +21,12 @@ type Rows3 = SMatrix<f64, 3, JOINTS>;
 pub(super) const LENGTH_M: f64 = 0.3;
 
 /// Singular value below which a direction is damped, m/rad; also the damping at a singular value of zero.
+/// The damping starts at `DAMPED_BELOW`; near a singular pose it limits the joints to about 1 / (2 `DAMPING`) rad/s
+/// per m/s.
 const DAMPED_BELOW: f64 = 0.05;
 const DAMPING: f64 = 0.02;
 /// Added to denominators to keep divisions finite; negligible otherwise.
+/// The square of a micrometre per radian, far below any real motion of the shaft.
 const TINY: f64 = 1e-12;
 
 #[derive(Clone, Copy)]

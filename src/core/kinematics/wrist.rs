@@ -3,6 +3,7 @@
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
 /// Largest pitch, rad: at a quarter turn roll and yaw would coincide.
+/// About 75 degrees: the other 15 keep roll and yaw defined despite small errors of the pitch.
 pub const PITCH_MAX_RAD: f64 = 1.3;
 
 /// Angles of the instrument's wrist, rad.

@@ -15,6 +15,8 @@
 //! controls it.
 
 /// Maximum time for the drives to respond, s, before `Ready` gives up. Design choice.
+/// A larger value keeps the drives on longer without a hand that agrees; a smaller one fails arms that release their
+/// brakes slowly.
 pub const READY_WITHIN_S: f64 = 2.0;
 
 /// State of an arm pair; `F` is the cause of a fault.
@@ -45,6 +47,7 @@ pub struct Permits {
 impl<F: Copy> InterlockState<F> {
     pub const fn permits(self) -> Permits {
         Permits {
+            // A clutched follower rests at its place with its drives on.
             drives: matches!(self, Self::Ready | Self::Engaged | Self::Clutched),
             coupled: matches!(self, Self::Engaged),
         }
@@ -205,6 +208,7 @@ impl<F: Copy> Interlock<F> {
         let next = match (wish, self.at) {
             // The safe state is reachable from everywhere; a fault stays visible under a latched stop.
             (InterlockRequest::Stop, InterlockPhase::Stopped(_) | InterlockPhase::Faulted(..)) => return Ok(None),
+            // No request for a stop is refused, whatever the state; the machine then needs a release.
             (InterlockRequest::Stop, InterlockPhase::Disconnected(at)) => InterlockPhase::Stopped(at.stop()),
             (InterlockRequest::Stop, InterlockPhase::Idle(at)) => InterlockPhase::Stopped(at.stop()),
             (InterlockRequest::Stop, InterlockPhase::Ready(at)) => InterlockPhase::Stopped(at.stop()),
@@ -217,6 +221,7 @@ impl<F: Copy> Interlock<F> {
             (InterlockRequest::Rest, InterlockPhase::Ready(at)) => InterlockPhase::Idle(at.rest()),
             (InterlockRequest::Rest, InterlockPhase::Engaged(at)) => InterlockPhase::Idle(at.rest()),
             (InterlockRequest::Rest, InterlockPhase::Clutched(at)) => InterlockPhase::Idle(at.rest()),
+            // Both lead to `Idle`, never to `Engaged`: nothing resumes by itself.
             (InterlockRequest::Release, InterlockPhase::Stopped(at)) => InterlockPhase::Idle(at.release()),
             (InterlockRequest::Release, InterlockPhase::Faulted(at, _)) => InterlockPhase::Idle(at.release()),
             (InterlockRequest::Engage | InterlockRequest::Rest | InterlockRequest::Release, _) => {
@@ -233,6 +238,7 @@ impl<F: Copy> Interlock<F> {
             InterlockPhase::Ready(at) => at.fail(),
             InterlockPhase::Engaged(at) => at.fail(),
             InterlockPhase::Clutched(at) => at.fail(),
+            // A missing device is not faulty, and a second fault would hide the first cause.
             InterlockPhase::Disconnected(_) | InterlockPhase::Stopped(_) | InterlockPhase::Faulted(..) => return None,
         };
         Some(self.go(InterlockPhase::Faulted(next, fault), TransitionCause::Fault))
@@ -254,11 +260,13 @@ impl<F: Copy> Interlock<F> {
             InterlockPhase::Ready(at) if !seen.connected => {
                 (InterlockPhase::Disconnected(at.disconnect()), TransitionCause::Disconnected)
             }
+            // Not while the clutch is pressed: the agreement of hand and tip would end with its release.
             InterlockPhase::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
                 (InterlockPhase::Engaged(at.engage()), TransitionCause::Agreed)
             }
             // NaN does not count as in time.
             InterlockPhase::Ready(at) if !in_time => (InterlockPhase::Idle(at.rest()), TransitionCause::Late),
+            // A hand that left is not a fault: the operator engages again without a release.
             InterlockPhase::Engaged(at) if !seen.present => (InterlockPhase::Idle(at.rest()), TransitionCause::Absent),
             InterlockPhase::Engaged(at) if seen.clutch => {
                 (InterlockPhase::Clutched(at.clutch()), TransitionCause::Clutch)

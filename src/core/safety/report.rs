@@ -48,6 +48,7 @@ pub const GATES: usize = Gate::ALL.len();
 
 impl Gate {
     /// Returns the position in [`Gate::ALL`], for tables with one entry per gate.
+    /// Declaration order is the index: see `listed!`.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -80,7 +81,7 @@ listed! {
         NotPermitted,
         /// The mode has nothing valid to render.
         NothingAsked,
-        /// The gain is moving to the chosen value.
+        /// A number of the request is NaN or infinite.
         NotFinite,
         /// The request is larger than any contact.
         Implausible,
@@ -127,6 +128,7 @@ pub struct GateCounts {
 impl GateCounts {
     /// Returns the fraction of all requests on which `gate` acted, 0 to 1.
     pub fn fraction(&self, gate: Gate) -> f64 {
+        // Before the first request nothing has been gated, so the fraction is zero and not NaN.
         if self.ticks == 0 { 0.0 } else { self.acted[gate.index()] as f64 / self.ticks as f64 }
     }
 

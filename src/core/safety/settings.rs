@@ -51,7 +51,7 @@ pub struct ChainSettings {
     /// Keeps the force at standstill instead of fading it in the dead band.
     pub static_hold: bool,
     pub energy: EnergyMode,
-    /// Apparent mass of the handle alone, kg, from which the governor recognises a released handle; 0 if unknown: the
+    /// Apparent mass of the handle alone, kg; the governor recognises a released handle by it. 0 if unknown: the
     /// governor then passes every force.
     pub handle_kg: f64,
     /// Viscous friction of the handle's bearings and cables, N s/m.
@@ -72,13 +72,17 @@ impl Default for ChainSettings {
             // 5 N within 10 ms: too fast to be felt as a ramp, slow enough that one bad sample changes the force by
             // only 0.5 N.
             slew_n_per_s: 500.0,
+            // Design choice for both ages: shorter ones let the jitter of a link fade the force, longer ones hold a
+            // force whose cause may be gone.
             fade_after_s: 0.005,
             zero_after_s: 0.020,
+            // The paper's 1 mm/s (Validation III: no force below it).
             dead_band_m_s: 1e-3,
             static_hold: false,
             energy: EnergyMode::default(),
             // Effective mass of an omega.7 at its grip.
             handle_kg: 0.25,
+            // Roughly an omega.7's (`docs/results/release.md`).
             handle_n_s_m: 0.5,
             // Position resolution of an omega.7, and of the simulated handles.
             handle_step_m: 1e-5,
@@ -99,8 +103,10 @@ impl ChainSettings {
     /// limit is 0).
     pub fn torque(device_limit_nm: f64) -> Self {
         Self {
+            // A quarter of a sigma.7's 0.4 Nm.
             ceiling_n: 0.1,
             device_limit_n: device_limit_nm,
+            // From zero to the ceiling in 8 ms, as for forces (4 N at 500 N/s).
             slew_n_per_s: 12.5,
             dead_band_m_s: 0.02,
             // The energy gate's allowance is meant for forces; the energy of a torque is a hundredth of it, so only
@@ -134,16 +140,20 @@ impl ChainSettings {
     pub(super) fn pulled_in(self) -> Self {
         let safe = Self::default();
         let fit = |value: f64, min: f64, max: f64, safe: f64| {
+            // NaN passes `clamp` unchanged, so it is replaced first.
             if value.is_nan() { safe } else { value.clamp(min, max) }
         };
         let fade_after_s = fit(self.fade_after_s, 0.0, 1.0, safe.fade_after_s);
         Self {
+            // NaN and out-of-range gains and limits become zero force, not the default: it is the one value that is
+            // always safe.
             gain: fit(self.gain, GAIN_ABOVE_ONE.min, GAIN_ABOVE_ONE.max, 0.0),
             gain_rate_per_s: fit(self.gain_rate_per_s, 0.0, 1e3, safe.gain_rate_per_s),
             ceiling_n: fit(self.ceiling_n, 0.0, 1e3, 0.0),
             device_limit_n: fit(self.device_limit_n, 0.0, 1e3, 0.0),
             slew_n_per_s: fit(self.slew_n_per_s, 0.0, 1e9, safe.slew_n_per_s),
             fade_after_s,
+            // A microsecond above the start: the fraction divides by the difference.
             zero_after_s: fit(self.zero_after_s, fade_after_s + 1e-6, 2.0, fade_after_s + 1e-6),
             handle_kg: fit(self.handle_kg, 0.0, 100.0, safe.handle_kg),
             handle_step_m: fit(self.handle_step_m, 1e-7, 1e-3, safe.handle_step_m),

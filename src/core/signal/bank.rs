@@ -2,6 +2,7 @@
 
 use super::Lanes;
 
+// Each further filter costs a column in every fit.
 pub const BANK: usize = 4;
 
 /// Differences between a signal and its low-pass filtered past, for four time constants.
@@ -28,9 +29,13 @@ impl LowPassBank {
     /// Creates filters with time constants from `shortest_s` (at least one sample) to `longest_s`, in geometric steps.
     pub fn new(shortest_s: f64, longest_s: f64, rate_hz: f64) -> Self {
         let period_s = rate_hz.recip();
+        // A filter faster than a sample would only copy its input.
         let shortest_s = shortest_s.max(period_s);
+        // The cube root, because three steps lead from the first to the fourth. The factor of four keeps them
+        // distinct at low rates.
         let step = libm::cbrt(longest_s.max(4.0 * shortest_s) / shortest_s);
         let tau_s = [1.0, step, step * step, step * step * step].map(|factor| factor * shortest_s);
+        // `expm1`, because `1 - exp(-x)` loses digits for small `x`.
         Self { fraction: tau_s.map(|tau_s| -libm::expm1(-period_s / tau_s)), low: [Lanes::ZERO; BANK], started: false }
     }
 
@@ -38,6 +43,7 @@ impl LowPassBank {
     /// value initialises the filters.
     pub fn step(&mut self, value: Lanes) -> [Lanes; BANK] {
         if !self.started {
+            // Started at the value itself: a filter started at zero would show a jump from the origin.
             self.low = [value; BANK];
             self.started = true;
         }
@@ -45,6 +51,7 @@ impl LowPassBank {
         for ((low, fraction), difference) in self.low.iter_mut().zip(self.fraction).zip(&mut differences) {
             *low += (value - *low) * fraction;
             *difference = (value - *low).settled();
+            // The low-pass is corrected by the rounded difference, so that both always add up to the value.
             *low = value - *difference;
         }
         differences

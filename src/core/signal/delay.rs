@@ -26,6 +26,8 @@ impl<T: Copy> DelayLine<T> {
     /// Creates a line that stores the last `max_delay` pushes; `blank` only initialises the memory and is never
     /// returned.
     pub fn new(max_delay: usize, blank: T) -> Self {
+        // One more slot than the delay: the newest value is 0 pushes old. Starts at the last slot, so that the first
+        // push goes to the first.
         Self { ring: vec![blank; max_delay + 1], newest: max_delay, filled: 0 }
     }
 
@@ -39,6 +41,7 @@ impl<T: Copy> DelayLine<T> {
     /// that large values can be written in place).
     #[inline]
     pub fn push_slot(&mut self) -> &mut T {
+        // A comparison instead of a remainder: a division per push is slower.
         self.newest = if self.newest + 1 >= self.ring.len() { 0 } else { self.newest + 1 };
         self.filled = (self.filled + 1).min(self.ring.len());
         &mut self.ring[self.newest]
@@ -51,6 +54,7 @@ impl<T: Copy> DelayLine<T> {
         if delay >= self.filled {
             return None;
         }
+        // The age counts backwards through the ring, so it may wrap once.
         let index = if delay <= self.newest { self.newest - delay } else { self.newest + self.ring.len() - delay };
         self.ring.get(index)
     }
@@ -58,6 +62,7 @@ impl<T: Copy> DelayLine<T> {
     /// Returns the value pushed `delay` pushes ago, or the oldest one stored; `None` only if nothing was pushed yet.
     #[inline]
     pub fn get_or_oldest(&self, delay: usize) -> Option<&T> {
+        // `None` only for an empty line.
         self.get(delay.min(self.filled.checked_sub(1)?))
     }
 
@@ -75,6 +80,7 @@ impl<T: Copy> DelayLine<T> {
     }
 
     pub fn clear(&mut self) {
+        // The values stay in memory but cannot be read, because nothing counts as filled.
         self.filled = 0;
     }
 }

@@ -68,6 +68,7 @@ enum DifferentiatorInner {
 
 impl Differentiator {
     pub fn new(kind: DifferentiatorKind, rate_hz: f64) -> Self {
+        // At least five also where 20 ms have fewer samples: see `MIN_SAMPLES`.
         let samples = ((SPAN_S * rate_hz).round() as usize).max(MIN_SAMPLES);
         Self(match kind {
             DifferentiatorKind::SavitzkyGolay => {
@@ -75,6 +76,7 @@ impl Differentiator {
             }
             DifferentiatorKind::Kalman => DifferentiatorInner::Kalman(SignalKalman::new(KALMAN_BANDWIDTH_HZ, rate_hz)),
             DifferentiatorKind::Foaw => {
+                // Only this filter searches for a window, so only its length is limited.
                 DifferentiatorInner::Foaw(Foaw::new(samples.min(MAX_FOAW_SAMPLES), rate_hz, FOAW_BAND_M))
             }
         })

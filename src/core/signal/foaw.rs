@@ -15,6 +15,7 @@ pub(super) struct Foaw {
 impl Foaw {
     /// Creates windows of up to `n` samples at `rate_hz`; `band_m` is the half width of the position noise.
     pub(super) fn new(n: usize, rate_hz: f64, band_m: f64) -> Self {
+        // Fewer than three samples leave no sample between the two ends to test.
         let n = n.max(3);
         // The slope uncertainty of a line over the full window with noise `band_m` is the noise band of the second
         // stage.
@@ -51,6 +52,7 @@ struct AdaptiveSlope {
 
 impl AdaptiveSlope {
     fn new(n: usize, rate_hz: f64, band: f64) -> Self {
+        // One slot less than the window, because a delay line also stores the newest value.
         Self { samples: DelayLine::new(n - 1, Lanes::ZERO), rate_hz, band }
     }
 
@@ -73,6 +75,8 @@ impl AdaptiveSlope {
         for length in 1..self.samples.len() {
             let oldest = at(length);
             let line = (newest - oldest) / length as f64;
+            // A line through the two ends that leaves the band shows that the motion is not straight over this
+            // window.
             let fits = (1..length).all(|k| (newest - line * k as f64 - at(k)).abs() <= self.band);
             if !fits {
                 break;
@@ -82,6 +86,8 @@ impl AdaptiveSlope {
             let n = (length + 1) as f64;
             // Slope over k = 0..length against age. Age increases backwards in time, hence the sign.
             let mean_age = (n - 1.0) / 2.0;
+            // The least-squares slope of equally spaced samples; `n (n^2 - 1) / 12` is the sum of their squared
+            // distances from the mean.
             slope_per_tick = -(weighted - mean_age * sum) / (n * (n * n - 1.0) / 12.0);
         }
         slope_per_tick * self.rate_hz

@@ -24,6 +24,7 @@ pub(super) struct SignalKalman {
 impl SignalKalman {
     /// Creates a filter with the given bandwidth (Hz), limited to a tenth of the rate.
     pub(super) fn new(bandwidth_hz: f64, rate_hz: f64) -> Self {
+        // Above a tenth of the rate the discrete filter no longer has the poles of the continuous one.
         let bandwidth_hz = bandwidth_hz.min(0.1 * rate_hz);
         let period_s = 1.0 / rate_hz;
         // Time in units of one period: the transition matrix then contains only factorials, and all numbers are near
@@ -33,11 +34,15 @@ impl SignalKalman {
         let a = transition(1.0);
         let q = process_noise(fourth * fourth);
         let mut p = Matrix4::identity();
+        // Stops at the fixed point; the limit only ensures an end.
         for _ in 0..20_000 {
             let predicted = a * p * a.transpose() + q;
+            // Only the position is measured, so the innovation covariance is a number: its variance plus 1 for the
+            // measurement.
             let gain: Vector4<f64> = predicted.column(0) / (predicted[(0, 0)] + 1.0);
             let updated = predicted - gain * predicted.row(0);
             let settled = (updated - p).norm() <= 1e-14 * updated.norm();
+            // Made symmetric again: rounding would otherwise let the two halves drift apart.
             p = (updated + updated.transpose()) * 0.5;
             if settled {
                 break;
@@ -45,13 +50,17 @@ impl SignalKalman {
         }
         let predicted = a * p * a.transpose() + q;
         let k = predicted.column(0) / (predicted[(0, 0)] + 1.0);
+        // Back from periods to seconds: each derivative gains one factor of the rate.
         let gain = [k[0], k[1] * rate_hz, k[2] * (rate_hz * rate_hz), k[3] * (rate_hz * rate_hz * rate_hz)];
+        // One period of the bandwidth: the poles have then decayed to e^-2.4 (their real part is at least 0.38 of the
+        // bandwidth in rad/s).
         let settling_ticks = (rate_hz / bandwidth_hz).ceil() as usize;
         Self { gain, period_s, state: [Lanes::ZERO; 4], ticks: 0, settling_ticks }
     }
 
     pub(super) fn step(&mut self, position: Lanes) -> Motion {
         if self.ticks == 0 {
+            // Starts at the first position with zero speed, otherwise the distance from the origin would be a speed.
             self.state = [position, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
         }
         self.ticks = self.ticks.saturating_add(1);
@@ -83,5 +92,6 @@ fn transition(t: f64) -> Matrix4<f64> {
 /// Returns the process covariance of one period for white noise of density `q` on the derivative of the jerk.
 fn process_noise(q: f64) -> Matrix4<f64> {
     let factorial = [6.0, 2.0, 1.0, 1.0];
+    // The integral of `t^(3-i) t^(3-j) / ((3-i)! (3-j)!)` over one period.
     Matrix4::from_fn(|i, j| q / (factorial[i] * factorial[j] * (7 - i - j) as f64))
 }

@@ -14,6 +14,7 @@ use wide::f64x4;
 ///
 /// Exponentially weighted means decay for as long as their input is zero. After some minutes they would be subnormal
 /// numbers, which are a hundred times slower to compute with and whose reciprocals are infinite.
+/// Far below any physical quantity here, and its square is still a normal number.
 pub const NOTHING: f64 = 1e-100;
 
 /// Returns `value`, or 0 if it is closer to zero than [`NOTHING`].
@@ -75,6 +76,7 @@ impl Lanes {
     #[must_use]
     #[inline(always)]
     pub fn recip_or_zero(self) -> Self {
+        // Not `== 0.0`: the reciprocal of a subnormal number is infinite.
         self.map(|value| if value.abs() < f64::MIN_POSITIVE { 0.0 } else { 1.0 / value })
     }
 
@@ -106,6 +108,7 @@ impl Lanes {
 
 impl From<Vector3<f64>> for Lanes {
     fn from(v: Vector3<f64>) -> Self {
+        // The spare lane is zero, so that sums over all lanes are sums over the axes.
         Self([v.x, v.y, v.z, 0.0])
     }
 }

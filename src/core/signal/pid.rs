@@ -46,13 +46,17 @@ impl Pid {
     /// Returns the output for this set point and measurement, `dt_s` after the last step. A non-finite input gives zero
     /// and leaves the state unchanged.
     pub fn step(&mut self, goal: f64, measured: f64, dt_s: f64) -> f64 {
+        // A time that does not advance has no derivative.
         if !(goal.is_finite() && measured.is_finite() && dt_s > 0.0) {
             return 0.0;
         }
         let PidGains { proportional, integral_per_s, derivative_s, integral_max } = self.gains;
         let error = goal - measured;
+        // The sign of a limit says nothing, so a negative one cannot disable the clamp.
         let max = integral_max.abs();
+        // Clamped in every step (anti-windup): an actuator at its stop would otherwise need as long to come back.
         self.integral = (self.integral + integral_per_s * error * dt_s).clamp(-max, max);
+        // On the measurement instead of the error, so that a step of the set point causes no kick.
         let change = self.last.map_or(0.0, |last| (measured - last) / dt_s);
         self.last = Some(measured);
         proportional * error + self.integral - derivative_s * change

@@ -19,6 +19,7 @@ pub(super) struct SavitzkyGolay {
 impl SavitzkyGolay {
     /// Fits a parabola over `n >= 3` samples at `rate_hz`.
     pub(super) fn new(n: usize, rate_hz: f64) -> Self {
+        // A parabola has three parameters.
         let n = n.max(3);
         // Time in units of the window, newest sample at 0: the Vandermonde matrix is then well conditioned at every
         // rate.
@@ -34,6 +35,7 @@ impl SavitzkyGolay {
             let z = DVector::from_iterator(3, q_transposed.column(k).iter().copied());
             r.solve_upper_triangular(&z).unwrap_or_else(|| DVector::zeros(3))
         };
+        // From the scaled time back to seconds: one factor per derivative.
         let per_second = rate_hz / span;
         let weights = (0..n)
             .map(|k| {
@@ -48,6 +50,7 @@ impl SavitzkyGolay {
     pub(super) fn step(&mut self, position: Lanes) -> Motion {
         self.samples.push(position);
         if !self.settled() {
+            // A half-filled window would show the start at zero as motion.
             return Motion { x: position, ..Motion::default() };
         }
         let mut motion = Motion { x: position, ..Motion::default() };

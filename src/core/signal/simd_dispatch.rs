@@ -29,6 +29,7 @@ pub(crate) trait SimdLoop {
 #[inline]
 pub(crate) fn widest<W: SimdLoop>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
+    // The standard library caches the answer, so this is one load in a tick.
     if std::arch::is_x86_feature_detected!("avx2") {
         #[expect(unsafe_code, reason = "the only way to compile a function for more than the minimum processor")]
         // SAFETY: the processor has the features that the function is compiled for.

@@ -15,9 +15,12 @@ use nalgebra::SVector;
 
 /// Permitted error, as a fraction and in m/s. A gate that compares the speed with a threshold does not need more, so
 /// the window can stay short.
+/// Larger values shorten the window and let the dead band flicker; smaller ones lengthen it and delay the speed.
 const FRACTION: f64 = 0.1;
 const MIN_M_S: f64 = 0.1e-3;
 /// Each of this many newest readings is examined; of the older ones, only one in this many.
+/// 16 readings are 16 ms at 1 kHz: a fast hand is judged within them. Further back every fourth is enough, because the
+/// line hardly changes.
 const NEAR: usize = 16;
 const STRIDE: usize = 4;
 /// Longest window, s: a step of 40 um. Otherwise a hand at rest would keep the last motion for seconds.
@@ -53,7 +56,9 @@ pub struct Speed<const D: usize> {
 impl<const D: usize> Speed<D> {
     /// Creates an estimator for readings in steps of `step_m` (m) at `rate_hz`. All memory is allocated here.
     pub fn new(step_m: f64, rate_hz: f64) -> Self {
+        // A step of zero would ask for a window of zero length.
         let step_m = if step_m > 0.0 { step_m } else { f64::MIN_POSITIVE };
+        // Over this window a single step is within the permitted error of a hand at rest.
         let longest_s = (step_m * (1.0 + FRACTION) / MIN_M_S).min(LONGEST_S);
         let room = (longest_s * rate_hz).ceil() as usize + 2;
         Self { step_m, period_s: 1.0 / rate_hz, room, readings: VecDeque::with_capacity(room + 2) }
@@ -63,6 +68,7 @@ impl<const D: usize> Speed<D> {
     /// restarts at rest; non-finite input is ignored.
     pub fn step(&mut self, t_s: f64, position_m: SVector<f64, D>) -> f64 {
         if t_s.is_finite() && position_m.iter().all(|x| x.is_finite()) {
+            // The clock was set back or the reading was repeated: no slope can be computed over it.
             if self.readings.front().is_some_and(|(last_s, _)| t_s <= *last_s) {
                 self.readings.clear();
             }
@@ -77,6 +83,7 @@ impl<const D: usize> Speed<D> {
     }
 
     fn slope(&self, axis: usize) -> f64 {
+        // No reading yet: no motion is known.
         let Some((now_s, now_m)) = self.readings.front() else { return 0.0 };
         let band_m = ROUNDING * self.step_m;
         let mut slope = 0.0;
@@ -87,11 +94,13 @@ impl<const D: usize> Speed<D> {
             let dt_s = now_s - then_s;
             let travel_m = now_m[axis] - then_m[axis];
             let line = travel_m / dt_s;
+            // No straight line passes within a step of all readings: the motion bends here, so the window ends.
             if !(min..=max).contains(&line) {
                 break;
             }
             slope = line;
             // The slope may exceed the true speed by the permitted error.
+            // Long enough: a longer window would only add lag.
             if self.step_m * (1.0 + FRACTION) <= dt_s * (FRACTION * slope.abs() + MIN_M_S) {
                 break;
             }

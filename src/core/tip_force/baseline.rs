@@ -36,9 +36,11 @@ impl Baselines {
     pub fn fit(inputs: &[String], outputs: &[String], x: &[f32], y: &[f32]) -> Self {
         let soft = Expansion::fit(inputs, x).soft(inputs.len());
         let like = |output: &String| {
+            // Only outputs called `tip_...` have a counterpart at the wrist.
             let wrist = output.strip_prefix("tip_")?;
             inputs.iter().position(|input| input == wrist)
         };
+        // At least one column, because `chunks_exact` refuses zero.
         let signs: Vec<f32> = x.chunks_exact(inputs.len().max(1)).flat_map(|row| with_signs(row, &soft)).collect();
         Self {
             like: outputs.iter().map(like).collect(),
@@ -58,6 +60,7 @@ impl Baselines {
         like && self.soft.len() == inputs
             && one(&self.linear, inputs)
             && one(&self.friction, inputs + signs)
+            // A file with more is not one of ours, and would allocate without limit.
             && inputs + signs <= 2 * MAX_FEATURES
     }
 
@@ -72,6 +75,7 @@ impl Baselines {
 
 /// Returns the inputs, followed by the soft signs of the directions of motion.
 fn with_signs(inputs: &[f32], soft: &[f32]) -> Vec<f32> {
+    // `v0` of zero marks a column that is not a direction of motion.
     let sign = |(v, v0): (&f32, &f32)| (*v0 > 0.0).then(|| v / (v * v + v0 * v0).sqrt());
     inputs.iter().copied().chain(inputs.iter().zip(soft).filter_map(sign)).collect()
 }
@@ -90,6 +94,8 @@ impl BaselineRegression {
         let mut constant = ny.mean.clone();
         for (k, row) in weights.chunks_mut(outputs).enumerate() {
             for (o, weight) in row.iter_mut().enumerate() {
+                // The regression was fitted on normalised data; this converts its weights back to the columns' own
+                // units.
                 *weight *= nx.inverse_sd[k] / ny.inverse_sd[o];
                 constant[o] -= *weight * nx.mean[k];
             }

@@ -29,9 +29,11 @@ pub const DEFAULT_INPUTS: [&str; 15] = [
 /// Default outputs: the force of the tissue on the tip (`shaft`, N).
 pub const DEFAULT_OUTPUTS: [&str; 3] = ["tip_fx_n", "tip_fy_n", "tip_fz_n"];
 
+// Force and torque: no model predicts more.
 pub const MAX_OUTPUTS: usize = 6;
 
 /// Maximum number of features of a network (a quaternion counts as its nine matrix entries).
+/// Bounds the memory and time of a tick for a model file that was made elsewhere.
 pub const MAX_FEATURES: usize = 64;
 
 const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
@@ -52,6 +54,7 @@ pub struct Expansion {
 }
 
 /// `v0` as a fraction of the root mean square of the column. Design choice.
+/// A smaller fraction makes the sign jump at noise, a larger one blurs friction at slow motion.
 const SOFT_FRACTION: f32 = 0.1;
 
 impl Expansion {
@@ -64,6 +67,7 @@ impl Expansion {
             _ => None,
         };
         let plain: Vec<usize> = (0..inputs.len()).filter(|i| !quaternion.is_some_and(|q| q.contains(i))).collect();
+        // Every other plain column is a load that friction can depend on.
         let (directions, loads): (Vec<_>, Vec<_>) = plain.iter().copied().partition(|&i| is_direction(&inputs[i]));
         let softened = directions.iter().map(|&i| soft.get(i).map(|v0| (i, *v0))).collect::<Option<Vec<_>>>()?;
         let positive = softened.iter().all(|(_, v0)| v0.is_finite() && *v0 > 0.0);
@@ -77,7 +81,9 @@ impl Expansion {
         for row in x.chunks_exact(inputs.len().max(1)) {
             square.iter_mut().zip(row).for_each(|(sum, value)| *sum += f64::from(*value) * f64::from(*value) / rows);
         }
+        // Not zero for a column that never moved: it divides in every row.
         let soft: Vec<f32> = square.into_iter().map(|s| (SOFT_FRACTION * s.sqrt() as f32).max(1e-9)).collect();
+        // Only if a `v0` is not finite: plain columns are then the safe choice.
         Self::new(inputs, &soft).unwrap_or_else(|| Self {
             plain: (0..inputs.len()).collect(),
             quaternion: None,
@@ -101,6 +107,7 @@ impl Expansion {
 
     /// Returns the number of measured features, which come first; signs and products follow.
     pub fn measured(&self) -> usize {
+        // Products repeat the measured columns, so doubt is judged without them.
         self.plain.len() + if self.quaternion.is_some() { 9 } else { 0 }
     }
 
@@ -146,6 +153,7 @@ fn is_direction(name: &str) -> bool {
 
 /// Returns the rotation matrix of a quaternion of any length, row by row.
 fn rotation_entries(w: f32, x: f32, y: f32, z: f32) -> [f32; 9] {
+    // Normalised here: a recorded quaternion may have lost a digit of its length.
     let s = 2.0 / (w * w + x * x + y * y + z * z);
     [
         1.0 - s * (y * y + z * z),

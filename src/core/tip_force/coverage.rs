@@ -23,6 +23,7 @@ impl CoverageMap {
     fn add(&mut self, [horizontal, vertical]: [f32; 2], ranges: [[f32; 2]; 2]) {
         let place = |value: f32, [low, high]: [f32; 2]| {
             let fraction = (value - low) / (high - low);
+            // Values beyond the map count in its edge.
             ((fraction * MAP as f32).max(0.0) as usize).min(MAP - 1)
         };
         self.counts[place(vertical, ranges[1])][place(horizontal, ranges[0])] += 1;
@@ -30,6 +31,7 @@ impl CoverageMap {
 
     /// Returns the number of cells with at least a few rows.
     pub fn filled(&self) -> usize {
+        // Three rows: a single one may be noise.
         self.counts.iter().flatten().filter(|count| **count >= 3).count()
     }
 }
@@ -57,10 +59,12 @@ impl ValueSpan {
 /// Maximum tilt of the shaft from straight down on a map, as a sine, in both directions.
 pub const TILT: f32 = 0.8;
 /// Largest force on a map, N: across the shaft and along it, in both directions.
+/// Above the force ceiling of 4 N, so that every felt force is on the map.
 pub const FORCE_N: f32 = 5.0;
 /// Range of depth on a map, m.
 pub const DEPTH_M: [f32; 2] = [0.0, 0.3];
 /// Largest speed on a map, m/s, in both directions.
+/// Above the brisk strokes (`BRISK_M_S`), so that they appear inside the map.
 pub const SPEED_M_S: f32 = 0.16;
 
 /// Requirements on a recording before it may be used for training. Design choice.
@@ -74,6 +78,7 @@ const TRAVEL_FRACTION: f64 = 0.12;
 /// error of 0.05 N at 0.10 m/s. This many rows, about three strokes, must be this fast, inwards and outwards.
 const BRISK_M_S: f32 = 0.10;
 const BRISK_ROWS: usize = 60;
+// Between 15 and 85 %: see `goals`.
 const CONTACT_FRACTION: [f64; 2] = [0.15, 0.85];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,6 +168,7 @@ impl TipForceCoverage {
         let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
         let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
         self.tilt.add([shaft.x, shaft.y], [[-TILT, TILT]; 2]);
+        // The map shows the size across the shaft; its direction does not matter there.
         let across_n = libm::hypotf(tip_n[0], tip_n[1]);
         self.force.add([across_n, tip_n[2]], [[0.0, FORCE_N], [-FORCE_N, FORCE_N]]);
         self.travel.add([depth_m, speed_m_s], [DEPTH_M, [-SPEED_M_S, SPEED_M_S]]);
@@ -171,6 +177,7 @@ impl TipForceCoverage {
         self.depth_span.add(depth_m);
         self.inwards += usize::from(travel_m > 0.0);
         self.outwards += usize::from(travel_m < 0.0);
+        // The sign of the speed is the direction; the same index is used in `goals`.
         self.brisk[usize::from(speed_m_s < 0.0)] += usize::from(speed_m_s.abs() >= BRISK_M_S);
         self.contact += usize::from(contact);
         self.rows += 1;

@@ -16,10 +16,12 @@ pub const FALSE_ALARMS: f64 = 0.01;
 const ROOM: f32 = 1.15;
 /// Their distances are computed in every tick, so their number is limited by the time of a tick.
 const CENTRES: usize = 96;
+// Lloyd's algorithm has practically settled after a few rounds; each reads all rows.
 const ROUNDS: usize = 8;
 /// Minimum variance in the whitening, as a fraction of the feature's variance: below it the direction is only noise.
 const FLOOR: f64 = 0.02;
 /// Maximum number of rows used for the statistics; larger data sets are thinned evenly.
+/// The upper 1 % of them are still 200 samples.
 const ROWS: usize = 20_000;
 
 /// Cluster centres, whitening, ranges and limits, for normalised features; only the first `width` features are used.
@@ -53,6 +55,7 @@ impl Doubt {
         whole_sessions: bool,
         seed: u64,
     ) -> Self {
+        // Whole sessions already contain the difference between sessions.
         let room = if whole_sessions { 1.0 } else { ROOM };
         let rows: Vec<usize> = (0..x.len() / stride).collect();
         let mut doubt = Self::geometry(x, stride, width, &rows, seed);
@@ -63,6 +66,7 @@ impl Doubt {
             let mut fold_distances = Vec::new();
             let mut fold_reaches = Vec::new();
             let fold = Self::geometry(x, stride, width, fit, seed);
+            // Divided among the folds, so that the total time does not depend on their number.
             for &row in &thinned(judge, ROWS / folds.len().max(1)) {
                 let features = &x[row * stride..row * stride + width];
                 fold_distances.push(fold.distance(features, &mut scratch));
@@ -71,6 +75,7 @@ impl Doubt {
             distances.push(quantile(fold_distances));
             reaches.push(quantile(fold_reaches));
         }
+        // The limits divide, so they may not be zero.
         doubt.distance_limit = room * median(distances).max(1e-3);
         doubt.range_limit = room * median(reaches).max(1.0);
         doubt.spread_limit = room * quantile(spreads).max(1e-6);
@@ -100,6 +105,7 @@ impl Doubt {
     pub fn outside(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
         let distance = self.distance(features, scratch) / self.distance_limit;
         let score = distance.max(self.reach(features) / self.range_limit);
+        // Tested apart from the score: a maximum ignores NaN.
         let finite = features[..self.width].iter().all(|x| x.is_finite());
         if finite && score.is_finite() { score } else { f32::INFINITY }
     }
@@ -114,12 +120,14 @@ impl Doubt {
         whiten(&self.whitening, features, scratch);
         let square = |centre: &[f32]| centre.iter().zip(&*scratch).map(|(c, x)| (c - x) * (c - x)).sum::<f32>();
         let nearest = self.centres.chunks_exact(self.width).map(square).fold(f32::INFINITY, f32::min);
+        // The root once, after the minimum: the order of squares is the same.
         nearest.sqrt()
     }
 
     /// Returns the largest distance from the middle of a feature's range, in halves of the range.
     fn reach(&self, features: &[f32]) -> f32 {
         let one = |([low, high], value): (&[f32; 2], &f32)| {
+            // A feature that was constant has no range; rounding must not make it infinitely far.
             let half = (0.5 * (high - low)).max(1e-4);
             (value - f32::midpoint(*low, *high)).abs() / half
         };
@@ -163,6 +171,7 @@ fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32
     let mut count = 0.0;
     for row in rows {
         let x = DVector::from_iterator(width, row.iter().map(|x| f64::from(*x)));
+        // One pass: sums of products now, the mean subtracted at the end.
         covariance.ger(1.0, &x, &x, 1.0);
         mean += x;
         count += 1.0;
@@ -173,13 +182,16 @@ fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32
         covariance.ger(-1.0, &mean, &mean, 1.0);
     }
     let SymmetricEigen { eigenvectors, eigenvalues } = covariance.symmetric_eigen();
+    // Divided by the standard deviation along each axis: distances then count in usual deviations.
     let entry = |k: usize, i: usize| (eigenvectors[(i, k)] / eigenvalues[k].max(FLOOR).sqrt()) as f32;
     (0..width).flat_map(|k| (0..width).map(move |i| (k, i))).map(|(k, i)| entry(k, i)).collect()
 }
 
 /// Finds centres of whitened rows by Lloyd's algorithm, starting from randomly chosen rows.
 fn centres(white: &[f32], width: usize, seed: u64) -> Vec<f32> {
+    // At most 4000 rows: the centres only have to cover the data.
     let rows: Vec<&[f32]> = white.chunks_exact(width).step_by((white.len() / width).div_ceil(4000).max(1)).collect();
+    // Mixed with a constant, so that the choice differs from other uses of the same seed.
     let mut generator = fastrand::Rng::with_seed(seed ^ 0xce27);
     let mut centres: Vec<f32> =
         generator.choose_multiple(rows.iter(), CENTRES).into_iter().flat_map(|row| row.iter().copied()).collect();
@@ -193,6 +205,7 @@ fn centres(white: &[f32], width: usize, seed: u64) -> Vec<f32> {
             counts[k] += 1.0;
             sums[k * width..(k + 1) * width].iter_mut().zip(*row).for_each(|(sum, x)| *sum += x);
         }
+        // A centre that attracted no row stays at its place.
         for (k, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             for i in k * width..(k + 1) * width {
                 centres[i] = sums[i] / count;

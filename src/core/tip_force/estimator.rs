@@ -36,6 +36,7 @@ impl Estimator {
     /// Predicts for one row of inputs, in the order of [`ForceModel::inputs`]. A wrong number of inputs or a non-finite
     /// input gives zeros with `in_doubt`.
     pub fn estimate(&mut self, inputs: &[f32]) -> TipForceEstimate {
+        // Zero force with infinite doubt: the caller then uses its fallback.
         let refused = TipForceEstimate { doubt: f32::INFINITY, in_doubt: true, ..TipForceEstimate::default() };
         let Self { model, features, scratch } = self;
         if inputs.len() != model.inputs.len() || !inputs.iter().all(|x| x.is_finite()) {
@@ -49,11 +50,13 @@ impl Estimator {
             return refused;
         }
         let outside = model.doubt.outside(features, scratch).max(moved);
+        // The geometry of the inputs decides before the members run: it is the trust in their nonlinear part.
         let answer = model.network.answer(features, trust(outside));
         let outputs = model.outputs.len();
         let score = outside.max(model.doubt.disagreement(&answer.spread[..outputs]));
         let mut output = answer.mean;
         model.scale.undo(&mut output[..outputs]);
+        // Unused entries would otherwise show the padding of the network.
         output[outputs..].fill(0.0);
         if !output.iter().all(|y| y.is_finite()) {
             return refused;
@@ -68,12 +71,15 @@ impl Estimator {
 
 /// Returns the weight of the nonlinear part: 1 within the training data, falling to 0 at 1.25 times the limit of doubt.
 fn trust(outside: f32) -> f32 {
+    // `(1.25 - x) / 0.25`: linear between the limit and 1.25 times it, so that nothing switches.
     (5.0 - 4.0 * outside).clamp(0.0, 1.0)
 }
 
 /// Returns infinity if a feature that was constant in training differs from its value beyond rounding, otherwise zero.
 fn moved(features: &[f32], mean: &[f32], inverse_sd: &[f32]) -> f32 {
     let differs =
+        // A thousandth of the value, and a hundred-thousandth near zero: more than the rounding of a file with 32-bit
+        // numbers.
         |((x, mean), inverse): ((&f32, &f32), &f32)| *inverse == 0.0 && (x - mean).abs() > 1e-3 * mean.abs() + 1e-5;
     if features.iter().zip(mean).zip(inverse_sd).any(differs) { f32::INFINITY } else { 0.0 }
 }

@@ -33,6 +33,7 @@ pub struct FeatureSettings {
 
 impl Default for FeatureSettings {
     fn default() -> Self {
+        // Chosen in the study of the features (see `FeatureSettings`); 5 ms are five samples at 1 kHz.
         Self { smoothing_s: 0.005, presliding_m: [2e-4, 6e-4], slip_m: 4e-4 }
     }
 }
@@ -79,6 +80,7 @@ struct LastValues {
 }
 
 impl LastValues {
+    // `known: false`: the stretch starts at zero, which is right only by chance.
     const fn unknown(t_s: f64, wrench: &Wrench, insertion_m: f64) -> Self {
         Self { t_s, wrench: *wrench, insertion_m, speed_m_s: 0.0, stretch_m: [0.0; 2], slip_m_s: 0.0, known: false }
     }
@@ -101,6 +103,7 @@ impl TipForceFeatures {
         // The state survives an incomplete sample: the next complete sample shows how far the instrument has moved in
         // the meantime.
         let complete = sample.world_from_s1.zip(sample.insertion_m);
+        // The sample is checked as a whole, because one bad number would stay in the low-pass.
         let finite = gravity_free.is_finite() && sample.is_finite() && t_s.is_finite();
         let Some((world_from_s1, insertion_m)) = complete.filter(|_| finite) else { return Err(NoRow::Missing) };
         let now = match self.last {
@@ -114,6 +117,7 @@ impl TipForceFeatures {
             return Err(NoRow::NotMoved);
         }
         let q = world_from_shaft(&world_from_s1);
+        // In the shaft's own frame, so that the roll of the arm makes no difference to the network.
         let shaft_from_s1 = q.inverse() * world_from_s1;
         let Wrench { force_n: f, torque_nm: t } = now.wrench.turned(&shaft_from_s1);
         let inputs = [
@@ -141,11 +145,13 @@ impl TipForceFeatures {
         let dt_s = t_s - last.t_s;
         // First-order low-pass, exact for an input that is constant over the step.
         let fraction = 1.0 - libm::exp(-dt_s / smoothing_s);
+        // Filtered like the wrench, so that a reversal has the same delay in both.
         let travel_m = (insertion_m - last.insertion_m) * fraction;
         let length_m = travel_m.abs();
         // Semi-implicit, so that it is stable for steps of any length.
         let stretch_m: [f64; 2] =
             std::array::from_fn(|k| (last.stretch_m[k] + travel_m) / (1.0 + length_m / presliding_m[k]));
+        // A fraction of path, not of time: friction forgets with travel.
         let slip = length_m / (length_m + slip_m);
         LastValues {
             t_s,
@@ -157,6 +163,7 @@ impl TipForceFeatures {
             speed_m_s: travel_m / dt_s,
             stretch_m,
             slip_m_s: last.slip_m_s + (length_m / dt_s - last.slip_m_s) * slip,
+            // Once known, known until a gap: later stretches follow from it.
             known: last.known || stretch_m[1].abs() >= KNOWN_FRACTION * presliding_m[1],
         }
     }

@@ -39,6 +39,7 @@ impl DerivedInput {
     /// Parses a name. Returns `None` for a plain column (no colon), and an error that explains what is wrong with the
     /// name.
     pub fn parse(name: &str) -> Option<Result<Self, String>> {
+        // A colon distinguishes a derived input from a column of a file.
         if !name.contains(':') {
             return None;
         }
@@ -103,17 +104,20 @@ impl DerivedMemory {
     fn step(&mut self, position: f32, load: f32) -> bool {
         let moved = position - self.last.unwrap_or(position);
         self.last = Some(position);
+        // Clamped at the width: beyond it the seal slides and only the direction is left.
         self.travel = (self.travel + moved).clamp(-self.width, self.width);
         if self.travel.abs() < self.width {
             return false;
         }
         let side = self.travel.signum();
         if side * self.side > 0.0 {
+            // Four widths: twice the travel of a reversal, as in the description of `load`.
             self.load += (load - self.load) * (moved.abs() / (4.0 * self.width)).min(1.0);
             return false;
         }
         let turned = self.side != 0.0;
         if turned {
+            // Half of this difference is friction: it changes its sign with the direction.
             self.swing = side * (load - self.load);
         }
         self.side = side;
@@ -122,6 +126,7 @@ impl DerivedMemory {
     }
 
     fn midline(&self, load: f32) -> f32 {
+        // Before the first reversal the direction is unknown, so only the travelled part counts.
         if self.side == 0.0 {
             return load - 0.5 * self.swing * self.travel / self.width;
         }

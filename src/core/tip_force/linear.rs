@@ -19,6 +19,7 @@ const RIDGE: f64 = 1e-3;
 /// assert!((weights[0] - 2.0).abs() < 0.01 && (weights[1] + 1.0).abs() < 0.01, "{weights:?}");
 /// ```
 pub fn solve(x: &[f32], y: &[f32], (inputs, outputs): (usize, usize), rows: &[usize]) -> Vec<f32> {
+    // In f64, because the sums of many rows would lose the digits of f32.
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
     let mut right = DMatrix::<f64>::zeros(inputs, outputs);
     for row in rows {
@@ -28,6 +29,7 @@ pub fn solve(x: &[f32], y: &[f32], (inputs, outputs): (usize, usize), rows: &[us
         right.ger(1.0, &x, &y, 1.0);
     }
     for k in 0..inputs {
+        // Times the number of rows, so that the ridge does not depend on the length of a recording.
         gram[(k, k)] += RIDGE * rows.len().max(1) as f64;
     }
     // With the ridge the matrix is positive definite; if the factorisation fails anyway, the linear path is zero.

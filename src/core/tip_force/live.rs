@@ -26,7 +26,7 @@ pub enum Fallback {
     /// The gravity-free force at the wrist, which includes the trocar's friction.
     #[default]
     WristForce,
-    /// Reason why the network is not used.
+    /// The last reliable force, which fades to zero within 0.3 s.
     HoldAndFade,
 }
 
@@ -57,7 +57,7 @@ pub struct TipForceReport {
 
 /// Doubt above which the fallback is used. On the emulated rig, whose task moves differently from its training, the
 /// network's mean error per axis at a doubt of 1.0 to 1.4 was 0.02 to 0.09 N, and at 1.8 to 2.0 it was 0.04 to 0.18 N;
-/// the error of the wrist force was 0.3 to 0.9 N and 0.2 to 1.2 N (`docs/calibration.md`).
+/// the error of the wrist force was 0.3 to 0.9 N and 0.2 to 1.2 N (`docs/results/calibration.md`).
 pub(super) const FAR_OUTSIDE: f32 = 2.0;
 /// Number of uncertain samples among the last five that triggers the fallback: a single one is bridged by the last
 /// reliable force.
@@ -102,6 +102,7 @@ impl LiveTipForce {
             place.ok_or_else(|| NotLive { found: name.clone() })
         };
         let columns = model.inputs.iter().map(live).collect::<Result<Vec<_>, _>>()?;
+        // A model with other outputs may be in other units or axes.
         if !model.outputs.iter().eq(DEFAULT_OUTPUTS.iter()) {
             return Err(NotLive { found: model.outputs.join(", ") });
         }
@@ -112,6 +113,7 @@ impl LiveTipForce {
             features: TipForceFeatures::new(FeatureSettings::default()),
             fallback,
             outside: LastingCondition::default(),
+            // Starts as uncertain: the network has to be sure for `SURE_AFTER_S` first.
             far: LastingCondition { is: true, ..LastingCondition::default() },
             unsure: Some(Unsure::NotMoved),
             fraction: 0.0,
@@ -144,6 +146,7 @@ impl LiveTipForce {
 
     /// Returns the force for this sample. Must be called for every sample, in order.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> TipForceReport {
+        // Limited, so that the first sample after a gap does not complete a cross-fade at once.
         let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).clamp(0.0, HANDOVER_S));
         self.last_t_s = Some(t_s);
         let (answer_n, doubt, reason) = match self.features.step(t_s, gravity_free, sample) {
@@ -152,6 +155,7 @@ impl LiveTipForce {
                 let estimate = self.estimator.estimate(&self.inputs);
                 let [x, y, z, ..] = estimate.output.map(f64::from);
                 let reason = (estimate.doubt > FAR_OUTSIDE).then_some(Unsure::OutsideTraining);
+                // Back into the sensor's frame, which is the frame of every other force.
                 (Some(row.shaft_from_s1.inverse() * Vector3::new(x, y, z)), estimate.doubt, reason)
             }
             Err(NoRow::Missing) => (None, f32::INFINITY, Some(Unsure::Missing)),
@@ -159,16 +163,19 @@ impl LiveTipForce {
         };
         let extrapolates = self.outside.step(doubt > 1.0, dt_s);
         self.judge(reason, answer_n.is_none(), dt_s);
+        // Only while the network is in use and sure: a force from a doubtful sample must not be held.
         if let (Some(_), None, None) = (answer_n, reason, self.unsure) {
             self.held_n = answer_n;
         }
         let target = if self.unsure.is_none() { 1.0 } else { 0.0 };
         let max = dt_s / HANDOVER_S;
         self.fraction += (target - self.fraction).clamp(-max, max);
+        // The mixture of the fallbacks changes only while one is used, so that it does not jump at the next doubt.
         if self.unsure.is_some() {
             let wrist = if self.fallback_now() == Fallback::WristForce { 1.0 } else { 0.0 };
             self.wrist_fraction += (wrist - self.wrist_fraction).clamp(-max, max);
         }
+        // Falls within `HOLD_S`, returns within `HANDOVER_S`.
         self.held_fraction += (target - self.held_fraction).clamp(-dt_s / HOLD_S, max);
         // A single uncertain prediction is replaced by the last reliable one.
         let held_n = self.held_n.unwrap_or_else(Vector3::zeros);
@@ -177,6 +184,7 @@ impl LiveTipForce {
     }
 
     fn judge(&mut self, reason: Option<Unsure>, no_row: bool, dt_s: f64) {
+        // Without a row there is nothing to bridge with: the fallback starts at once.
         self.far.is |= no_row;
         if !self.far.step(reason.is_some(), dt_s) {
             self.unsure = None;
@@ -186,6 +194,7 @@ impl LiveTipForce {
     }
 
     fn fallback_n(&self, gravity_free: &Wrench) -> Vector3<f64> {
+        // Even the fallback is finite: it is the last value before the gates.
         let wrist_n = if gravity_free.is_finite() { gravity_free.force_n } else { Vector3::zeros() };
         let held_n = self.held_n.unwrap_or_else(Vector3::zeros) * self.held_fraction;
         wrist_n * self.wrist_fraction + held_n * (1.0 - self.wrist_fraction)
@@ -203,6 +212,7 @@ struct LastingCondition {
 
 impl LastingCondition {
     fn step(&mut self, now: bool, dt_s: f64) -> bool {
+        // The lowest five bits are the last five samples.
         self.recent = (self.recent << 1 | u32::from(now)) & 0b1_1111;
         self.since_s = if now { 0.0 } else { self.since_s + dt_s };
         self.is |= self.recent.count_ones() >= DOUBTFUL_OF_FIVE;

@@ -64,6 +64,7 @@ impl TipForceLayer {
     fn accumulate(&self, inputs: &[f32], to: &mut [f32]) {
         for (input, row) in inputs[..self.inputs].iter().zip(self.weights.chunks_exact(self.padded)) {
             for (to, weight) in to.chunks_exact_mut(LANE).zip(row.chunks_exact(LANE)) {
+                // A fixed inner length lets the compiler use one vector instruction.
                 for lane in 0..LANE {
                     to[lane] += input * weight[lane];
                 }
@@ -84,6 +85,7 @@ impl Member {
         let first = layers.first()?;
         let last = layers.last()?;
         let chained = layers.windows(2).all(|pair| pair[0].outputs == pair[1].inputs);
+        // A wider output would not fit the arrays of fixed size.
         let fits = first.inputs == skip.inputs && last.outputs == skip.outputs && skip.outputs <= MAX_OUTPUTS;
         (chained && fits).then_some(Self { layers, skip })
     }
@@ -109,11 +111,14 @@ impl Member {
             layer.accumulate(if k == 0 { inputs } else { now }, to);
             if k == last {
                 for z in &mut *to {
+                    // Only the last layer is scaled: its sum is the nonlinear part, and the linear path is added
+                    // afterwards.
                     *z *= trust;
                 }
                 self.skip.accumulate(inputs, to);
             } else {
                 for z in to {
+                    // A smooth step without an exponential: `z / sqrt(1 + z^2)` costs one root.
                     *z /= (1.0 + *z * *z).sqrt();
                 }
             }
@@ -162,6 +167,7 @@ impl TipForceNetwork {
     /// Evaluates all members on normalised inputs. `trust` (0 to 1) scales the nonlinear part: outside the training
     /// data, that part is unreliable, and the linear path alone is a better estimate. Allocates nothing.
     pub fn answer(&mut self, inputs: &[f32], trust: f32) -> EnsembleOutput {
+        // Not zero: `new` refuses an empty ensemble.
         let count = self.members.len() as f32;
         let (mut mean, mut low, mut high) =
             ([0.0; MAX_OUTPUTS], [f32::INFINITY; MAX_OUTPUTS], [f32::NEG_INFINITY; MAX_OUTPUTS]);

@@ -26,6 +26,7 @@ impl Normalisation {
         let count = rows.clone().count().max(1) as f64;
         let mut mean = vec![0.0_f64; width];
         let mut variance = vec![0.0_f64; width];
+        // Two passes: the difference of sums of squares would lose its digits for a large mean.
         for row in rows.clone() {
             for (mean, value) in mean.iter_mut().zip(&values[row * width..]) {
                 *mean += f64::from(*value) / count;
@@ -61,6 +62,7 @@ impl Normalisation {
     /// Reverts the normalisation in place; a constant column becomes its mean.
     pub fn undo(&self, row: &mut [f32]) {
         for ((value, mean), inverse) in row.iter_mut().zip(&self.mean).zip(&self.inverse_sd) {
+            // The inverse of zero is not defined; the mean is the only value that such a column had.
             *value = if *inverse > 0.0 { *value / inverse } else { 0.0 } + mean;
         }
     }

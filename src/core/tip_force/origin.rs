@@ -41,6 +41,7 @@ const STEPS: usize = 5000;
 
 impl TrainingSettings {
     /// Returns the maximum number of epochs for this many training rows.
+    /// 10 epochs at the least, for the stop by validation to choose from; 500 at most for tiny data.
     pub fn epochs_for(&self, rows: usize) -> usize {
         self.epochs.unwrap_or_else(|| (STEPS / rows.div_ceil(self.batch).max(1)).clamp(10, 500))
     }

@@ -21,6 +21,7 @@ pub const INERTIAL_BYTES: usize = 61;
 /// Bits of the status word with a meaning: throttled, overrange, invalid, raw.
 pub const STATUS_BITS: u16 = 0b1111;
 
+// The checksum covers everything between the header and itself (`bota_driver`, 34 or 58 bytes).
 const CRC_BYTES: usize = 2;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,6 +100,7 @@ impl BotaFrame {
     /// ```
     pub fn decode(bytes: &[u8]) -> Result<Self, NoFrame> {
         let header = *bytes.first().ok_or(NoFrame::Shape)?;
+        // The length follows from the header, so a frame of another length is not one.
         if length_of(header) != Some(bytes.len()) {
             return Err(NoFrame::Shape);
         }
@@ -135,6 +137,7 @@ fn take<const N: usize>(from: &[u8]) -> [f32; N] {
 }
 
 /// Size of the decoder's buffer: more than 20 ms of the fastest serial line.
+/// 2048 bytes are 44 ms at 460 800 bit/s.
 const ROOM: usize = 2048;
 
 /// Finds frames in a stream of bytes. Write into [`room`](Self::room), report the number with [`filled`](Self::filled),
@@ -175,12 +178,14 @@ impl BotaDecoder {
                 self.skip();
                 continue;
             };
+            // `None` until the rest of the frame has arrived.
             let candidate = self.unread.bytes().get(..length)?;
             if let Ok(frame) = BotaFrame::decode(candidate) {
                 self.unread.pass(length);
                 self.since_refused = WRENCH_BYTES;
                 return Some(frame);
             }
+            // A payload may contain header bytes, so one damaged frame is refused several times; it counts once.
             if self.since_refused >= WRENCH_BYTES {
                 self.damaged += 1;
                 self.since_refused = 0;
@@ -191,6 +196,7 @@ impl BotaDecoder {
     }
 
     fn skip(&mut self) {
+        // One byte only: the true header may be the next one.
         self.unread.pass(1);
         self.skipped += 1;
         self.since_refused = self.since_refused.saturating_add(1);

@@ -10,6 +10,7 @@ pub const CONFIG: &[u8] = b"C\n";
 pub const RUN: &[u8] = b"R\n";
 /// Restarts the firmware, which can fix a calibration matrix that was not loaded.
 pub const INIT: &[u8] = b"I\n";
+// Only the manufacturer's driver documents this command; a sensor without it is identified by its boot text.
 pub const PRODUCT: &[u8] = b"p?\n";
 /// Sets the offsets that are saved in the sensor to zero.
 pub const NO_OFFSET: &[u8] = b"b,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000\n";
@@ -22,23 +23,27 @@ pub const SINC: std::ops::RangeInclusive<u16> = 64..=2047;
 
 /// Returns the rate with this averaging length, Hz.
 pub fn rate_hz(sinc: u16) -> f64 {
+    // The sensor samples 51.2 kHz (1 / 19.53125 us) and averages `sinc` samples (manufacturer's driver).
     51_200.0 / f64::from(sinc)
 }
 
 /// Returns the command for no temperature compensation, the calibration matrix, binary frames, and line speed
 /// `baud_index` of [`BAUDS`].
 pub fn communication(baud_index: usize) -> String {
+    // Temperature compensation off, calibration matrix on, binary frames: the manufacturer's driver sends the same.
     format!("c,0,1,0,{baud_index}\n")
 }
 
 /// Returns the command for averaging over `sinc` samples, without chopping, fast mode and second filter.
 pub fn filter(sinc: u16) -> String {
+    // Chopping off, fast mode off, FIR filter off: the averaging alone is the filter.
     format!("f,{sinc},0,0,1\n")
 }
 
 /// Returns the code of the newest acknowledgement `r,0,<letter>,<code>` of this command in `bytes`; 0 is success.
 pub fn acknowledged(bytes: &[u8], letter: u8) -> Option<u32> {
     let head = [b'r', b',', b'0', b',', letter, b','];
+    // Searched backwards in everything received, because measurement frames may surround the answer.
     bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head).find_map(|(at, _)| {
         let digits = &bytes[at + head.len()..];
         let count = digits.iter().take_while(|byte| byte.is_ascii_digit()).count();

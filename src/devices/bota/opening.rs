@@ -34,6 +34,7 @@ pub const TCP_PORT: u16 = 23;
 /// Maximum number of restarts of a first-generation sensor that has not loaded its calibration, as in `RoboComp`'s
 /// `bota_force_sensor`: some sensors occasionally start with the calibration inactive.
 const RESTARTS: u32 = 5;
+// Parameter 1.2 (requested state), value 1 (Config).
 const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";
 const FIRST_GENERATION: &str = "first-generation Bota sensor";
 const SECOND_GENERATION: &str = "second-generation Bota sensor";
@@ -194,6 +195,7 @@ fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -
 
 /// Returns the error for missing readings: checks whether the sensor sends them to another computer.
 fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> DeviceError {
+    // Connecting a UDP socket sends nothing, but makes the system choose the interface towards the sensor.
     let route = UdpSocket::bind(("0.0.0.0", 0)).and_then(|socket| {
         socket.connect(sensor)?;
         socket.local_addr()
@@ -295,6 +297,7 @@ fn check_serial(settings: &BotaSettings, identity: &DeviceIdentity) -> Result<()
 }
 
 /// Number of readings examined before a sensor counts as open.
+/// Six readings have five intervals, whose median bridges two lost frames.
 const FIRST_READINGS: usize = 6;
 /// Maximum factor between the measured and the reported rate, because of jitter and rounding.
 const RATE_FACTOR: f64 = 1.2;
@@ -308,6 +311,7 @@ fn first_readings(
     settings: &BotaSettings,
     timeouts: BotaTimeouts,
 ) -> Result<(), DeviceError> {
+    // The time of the readings at their rate, and two more that may be lost.
     let wait = timeouts.stream + Duration::from_secs_f64((FIRST_READINGS + 2) as f64 / rate_hz);
     let begin = Instant::now();
     let place = place.to_owned();
@@ -347,6 +351,7 @@ fn first_readings(
     Ok(())
 }
 
+// Bits of the status word (`rokubimini_serial`): 0 throttled, 1 overrange, 2 invalid, 3 raw.
 const THROTTLED_BIT: u16 = 1;
 const INVALID_BIT: u16 = 1 << 2;
 const RAW_BIT: u16 = 1 << 3;

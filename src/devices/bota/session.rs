@@ -22,9 +22,12 @@ impl Default for BotaTimeouts {
     /// Creates the times of the manufacturer's driver: 3 s for the start, 1 s for an answer.
     fn default() -> Self {
         Self {
+            // Opening the port toggles DTR, which restarts a first-generation sensor; the manufacturer's driver waits
+            // 3 s as well.
             boot: Duration::from_secs(3),
             answer: Duration::from_secs(1),
             tries: 3,
+            // The wait of `RoboComp`'s `bota_force_sensor` after a restart.
             init: Duration::from_millis(1500),
             stream: Duration::from_secs(1),
         }
@@ -33,6 +36,7 @@ impl Default for BotaTimeouts {
 
 /// Size of the buffer of received bytes in which answers are searched.
 const RECEIVED_MAX: usize = 8192;
+// At 460 800 bit/s, 46 bytes arrive in a millisecond: polling more often only costs processor time.
 const NAP: Duration = Duration::from_millis(1);
 /// Flushing a line ends when it has been quiet for this time, or after [`FLUSH`].
 const QUIET: Duration = Duration::from_millis(15);
@@ -82,6 +86,7 @@ impl BotaSession {
         command: &[u8],
         found: impl FnMut(&[u8]) -> Option<T>,
     ) -> Result<Option<T>, DeviceError> {
+        // Old bytes are read away first, so that an earlier answer is not taken as the answer to this command.
         self.take_in()?;
         self.received.clear();
         self.line.send(command).map_err(|_| self.broken())?;
@@ -112,6 +117,7 @@ impl BotaSession {
             self.frames += 1;
         }
         self.bytes += count as u64;
+        // The beginning is dropped: an answer is searched for among the newest bytes.
         if self.received.len() > RECEIVED_MAX {
             self.received.drain(..self.received.len() - RECEIVED_MAX);
         }
@@ -122,6 +128,7 @@ impl BotaSession {
     pub(super) fn why_no_answer(&self, command: &str, baud: Option<u32>) -> DeviceError {
         let place = self.place.clone();
         match baud {
+            // No byte at all: cable or power. Bytes without a frame: the speed of the line.
             _ if self.bytes == 0 => DeviceError::Silent { place },
             Some(baud) if self.frames == 0 => DeviceError::WrongBaud { place, baud },
             _ => DeviceError::Refused { place, command: command.trim().to_owned(), answer: "no answer".to_owned() },

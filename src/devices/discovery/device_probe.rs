@@ -26,6 +26,7 @@ pub struct DeviceProbe<F> {
 
 /// Listening time, unless the timeout is shorter.
 const LISTEN: Duration = Duration::from_millis(400);
+// Half a period of a 1 kHz device, so that no reading waits for another.
 const NAP: Duration = Duration::from_micros(500);
 
 impl<F> DeviceProbe<F> {

@@ -1,6 +1,8 @@
-//! A probe for each driver: opens the device like a rig and waits for it as long.
+//! A probe for each driver. It opens the device like a rig and waits for the same time.
 
 use std::time::Duration;
+
+use nima_core::kinematics::ArmModel;
 
 use super::{DataTiming, DeviceProbe, Probe};
 use crate::{ati, bota, dynamixel, external, force_dimension, haply, hid, kinova, ndi};
@@ -19,12 +21,12 @@ pub fn handle(name: &str, settings: force_dimension::ForceDimensionSettings) -> 
     Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || force_dimension::open(&settings)))
 }
 
-pub fn arm(name: &str, settings: kinova::KinovaSettings) -> Box<dyn Probe> {
+pub fn arm(name: &str, settings: kinova::KinovaSettings, model: ArmModel) -> Box<dyn Probe> {
     let place = format!("{}:{}", settings.host, settings.tcp_port);
     // As long as the rig would wait; an address without an answer is reported after one such time.
     let extra = Duration::try_from_secs_f64(settings.timeout_s).unwrap_or_default();
-    let probe = DeviceProbe::new(name, place, DataTiming::Always, move || kinova::open(&settings));
-    Box::new(probe.with_extra(extra))
+    let open = move || kinova::open_clearing(&settings, &model, &kinova::FaultClearing::default());
+    Box::new(DeviceProbe::new(name, place, DataTiming::Always, open).with_extra(extra))
 }
 
 pub fn sensor(name: &str, settings: bota::BotaSettings) -> Box<dyn Probe> {
@@ -66,11 +68,15 @@ pub fn external(name: &str, kind: external::ExternalKind, settings: external::Ex
         external::ExternalKind::Handle => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
             external::ExternalHandle::open(&settings)
         })),
-        external::ExternalKind::Arm => {
-            Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || external::ExternalArm::open(&settings)))
-        }
+        external::ExternalKind::Arm => external_arm(name, settings, ArmModel::GEN3),
         external::ExternalKind::Sensor => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
             external::ExternalSensor::open(&settings)
         })),
     }
+}
+
+pub fn external_arm(name: &str, settings: external::ExternalSettings, model: ArmModel) -> Box<dyn Probe> {
+    let place = settings.place();
+    let open = move || external::ExternalArm::open(&settings, &model);
+    Box::new(DeviceProbe::new(name, place, DataTiming::Always, open))
 }

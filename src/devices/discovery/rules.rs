@@ -7,6 +7,7 @@ pub const RULES: &str = include_str!("../../../assets/70-nima.rules");
 /// Installed location; the number must be below 73, the rule file in which systemd grants access to the user.
 pub const FILE: &str = "/etc/udev/rules.d/70-nima.rules";
 
+// `uaccess` gives the user at the machine access; the group is for systems without systemd and for remote logins.
 const RIGHTS: &str = r#"MODE="0660", GROUP="plugdev", TAG+="uaccess""#;
 
 /// Returns the rule for one human interface device, or for all of them.

@@ -25,6 +25,7 @@ pub struct SerialProbe {
 
 /// Listening time, unless the timeout is shorter.
 const LISTEN: Duration = Duration::from_millis(400);
+// A probe listens for a fraction of a second, so 2 ms do not delay it.
 const NAP: Duration = Duration::from_millis(2);
 /// Longest frame length for which headers are searched: more than eight times the longest frame of the devices here (61
 /// bytes), because unknown devices are examined, too.

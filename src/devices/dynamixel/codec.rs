@@ -10,7 +10,9 @@ use crc::{CRC_16_UMTS, Crc};
 
 use crate::stream_buffer::Unread;
 
+// Three bytes that stuffing keeps out of the parameters, and a reserved zero (ROBOTIS e-manual, protocol 2.0).
 const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
+// Within the parameters, `FD` is inserted after these bytes, so that the header occurs only at the start of a packet.
 const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
 const STUFFING: u8 = 0xFD;
 
@@ -20,6 +22,7 @@ pub const BROADCAST: u8 = 0xFE;
 pub const STATUS: u8 = 0x55;
 /// Bytes of a packet in addition to its parameters.
 pub const OVERHEAD: usize = 10;
+// Header, id and length.
 const PREFIX: usize = 7;
 
 /// Polynomial 0x8005, not reflected.
@@ -72,6 +75,7 @@ impl OutgoingPackets {
 
     /// Completes the packet with its length and checksum.
     pub fn end(&mut self) {
+        // The length counts from the instruction on, stuffed bytes and checksum included.
         let length = (self.bytes.len() - self.begin - PREFIX + 2) as u16;
         let [low, high] = length.to_le_bytes();
         self.bytes[self.begin + 5] = low;
@@ -179,6 +183,7 @@ impl IncomingPackets {
                 return None;
             }
             let wire_bytes = PREFIX + usize::from(u16::from_le_bytes([rest[5], rest[6]]));
+            // A length that no packet has, or an id that protocol 2.0 does not use: not a header.
             if wire_bytes < OVERHEAD || wire_bytes > self.longest || rest[4] == 0xFF {
                 self.refuse();
                 continue;
@@ -194,6 +199,7 @@ impl IncomingPackets {
             let id = rest[4];
             let instruction = rest[PREFIX];
             self.body.clear();
+            // The answer to a fast read is not stuffed (e-manual).
             if (id, instruction) == (BROADCAST, STATUS) {
                 self.body.extend_from_slice(&covered[PREFIX + 1..]);
             } else {
@@ -213,6 +219,7 @@ impl IncomingPackets {
 
     fn find_header(&mut self) {
         let rest = self.unread.bytes();
+        // A header that is cut off by the end of the buffer counts as one: the rest may still arrive.
         let begins = |tail: &[u8]| tail.iter().zip(HEADER).all(|(byte, known)| *byte == known);
         let skip = (0..rest.len()).find(|at| begins(&rest[*at..])).unwrap_or(rest.len());
         self.refused.skipped += skip as u64;
@@ -232,6 +239,7 @@ fn unstuff(from: &[u8], to: &mut Vec<u8>) {
             }
         }
         matched = match byte {
+            // More than two `FF` in a row still end in two.
             0xFF => (matched + 1).min(2),
             0xFD if matched == 2 => 3,
             _ => 0,
@@ -252,6 +260,7 @@ pub struct DynamixelBlock<'a> {
 /// also that of the last block, has been removed already, and it covers the checksums in between. Returns `None` if the
 /// length does not fit.
 pub fn blocks(body: &[u8], data_bytes: usize) -> Option<impl Iterator<Item = DynamixelBlock<'_>>> {
+    // Error, id, data and a checksum of two bytes; the last checksum covers the packet.
     let each = data_bytes + 4;
     let fits = (body.len() + 2).is_multiple_of(each) && !body.is_empty();
     fits.then(|| {

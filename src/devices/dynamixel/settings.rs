@@ -127,6 +127,7 @@ const fn silence_s() -> f64 {
 const ID_MAX: u8 = 252;
 /// Highest profile velocity and acceleration, units (ROBOTIS e-manual, X series).
 const PROFILE_MAX: f64 = 32_767.0;
+// Fourteen bits (ROBOTIS e-manual, X series).
 const GAIN_MAX: u16 = 16_383;
 /// Maximum turns of an extended position in each direction (ROBOTIS e-manual, X series: -256 to 256 revolutions); one
 /// turn is kept, so that the homing offset fits too.

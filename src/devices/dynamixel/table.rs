@@ -26,6 +26,7 @@ pub const BAUD: DynamixelRegister = register(8, 1);
 pub const RETURN_DELAY: DynamixelRegister = register(9, 1);
 /// Bit 0 reverses the direction, bit 2 selects time-based profiles, bit 3 switches the torque on with a goal.
 pub const DRIVE_MODE: DynamixelRegister = register(10, 1);
+/// 0 current, 1 velocity, 3 position, 4 extended position, 5 current-based position, 16 PWM.
 pub const OPERATING_MODE: DynamixelRegister = register(11, 1);
 /// Secondary id; the servo executes writes to it without an answer.
 pub const SHADOW_ID: DynamixelRegister = register(12, 1);
@@ -33,6 +34,7 @@ pub const SHADOW_ID: DynamixelRegister = register(12, 1);
 pub const HOMING_OFFSET: DynamixelRegister = register(20, 4);
 /// Velocity above which the servo counts as moving.
 pub const MOVING_THRESHOLD: DynamixelRegister = register(24, 4);
+/// Degrees Celsius.
 pub const TEMPERATURE_LIMIT: DynamixelRegister = register(31, 1);
 /// Maximum supply voltage, units of 0.1 V.
 pub const VOLTAGE_MAX: DynamixelRegister = register(32, 2);
@@ -50,6 +52,7 @@ pub const POSITION_MAX: DynamixelRegister = register(48, 4);
 pub const POSITION_MIN: DynamixelRegister = register(52, 4);
 /// Hardware errors that switch the torque off.
 pub const SHUTDOWN: DynamixelRegister = register(63, 1);
+/// Registers below this address are writable only while the torque is off.
 pub const EEPROM_BYTES: u16 = 64;
 /// 1: the motor is driven.
 pub const TORQUE_ENABLE: DynamixelRegister = register(64, 1);
@@ -57,6 +60,7 @@ pub const TORQUE_ENABLE: DynamixelRegister = register(64, 1);
 pub const STATUS_RETURN_LEVEL: DynamixelRegister = register(68, 1);
 /// Whether a write waits for the action instruction.
 pub const REGISTERED: DynamixelRegister = register(69, 1);
+/// Bits: 0 input voltage, 2 overheating, 3 encoder, 4 electrical shock, 5 overload; only a restart clears them.
 pub const HARDWARE_ERROR: DynamixelRegister = register(70, 1);
 /// Integral gain of the velocity controller.
 pub const VELOCITY_I: DynamixelRegister = register(76, 2);
@@ -68,13 +72,17 @@ pub const POSITION_D: DynamixelRegister = register(80, 2);
 pub const POSITION_I: DynamixelRegister = register(82, 2);
 /// Proportional gain of the position controller.
 pub const POSITION_P: DynamixelRegister = register(84, 2);
+/// Acceleration feedforward of the position controller.
 pub const FEEDFORWARD_2: DynamixelRegister = register(88, 2);
+/// Velocity feedforward of the position controller.
 pub const FEEDFORWARD_1: DynamixelRegister = register(90, 2);
 /// Units of 20 ms; 0 off, -1 expired.
 pub const BUS_WATCHDOG: DynamixelRegister = register(98, 1);
+/// Units of 0.113 %; 885 is 100 %.
 pub const GOAL_PWM: DynamixelRegister = register(100, 2);
 /// Goal in current mode, limit in current-based position mode.
 pub const GOAL_CURRENT: DynamixelRegister = register(102, 2);
+/// Units of 0.229 rpm.
 pub const GOAL_VELOCITY: DynamixelRegister = register(104, 4);
 /// Units of 214.577 rev/min^2; 0 sets no limit.
 pub const PROFILE_ACCELERATION: DynamixelRegister = register(108, 4);
@@ -84,9 +92,11 @@ pub const PROFILE_VELOCITY: DynamixelRegister = register(112, 4);
 pub const GOAL_POSITION: DynamixelRegister = register(116, 4);
 /// Milliseconds, 0 to 32767.
 pub const TICK: DynamixelRegister = register(120, 2);
+/// 1 while the servo moves faster than [`MOVING_THRESHOLD`].
 pub const MOVING: DynamixelRegister = register(122, 1);
 /// Bit 0: in position; bit 1: a profile is running; bit 3: following error.
 pub const MOVING_STATUS: DynamixelRegister = register(123, 1);
+/// Units of 0.113 %; 885 is 100 %.
 pub const PRESENT_PWM: DynamixelRegister = register(124, 2);
 /// Measured current, in the model's unit.
 pub const PRESENT_CURRENT: DynamixelRegister = register(126, 2);
@@ -151,6 +161,7 @@ const fn without_current(number: u16, name: &'static str) -> ServoModel {
     model(number, name, f64::NAN, 0)
 }
 
+/// Number, unit of the current and highest current limit of each model (ROBOTIS e-manual).
 pub const MODELS: [ServoModel; 13] = [
     model(1000, "XH430-W350", 2.69e-3, 648),
     model(1010, "XH430-W210", 2.69e-3, 648),

@@ -1,9 +1,11 @@
-//! An external arm with the joints of a Gen3.
+//! An external arm.
 
 use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering},
 };
+
+use nima_core::kinematics::ArmModel;
 
 use super::{
     codec::{Datagram, status},
@@ -18,7 +20,9 @@ use crate::{
 
 /// Numbers of an arm beyond these limits are impossible: rad, rad/s, Nm.
 const ANGLE_MAX_RAD: f64 = 100.0;
+// Far above any arm; such a number can only be a wrong unit or a damaged datagram.
 const SPEED_MAX_RAD_S: f64 = 50.0;
+// Far above any arm, as for the speed.
 const TORQUE_MAX_NM: f64 = 1e4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +38,7 @@ enum ArmMode {
 pub struct ExternalArm {
     line: ExternalLine,
     guard: Guard,
+    joints: usize,
     mode: ArmMode,
     joint_rad: Option<[f64; ARM_JOINTS]>,
     last_s: Option<f64>,
@@ -45,8 +50,8 @@ impl ExternalArm {
     ///
     /// # Errors
     /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of an arm sends and receives.
-    pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
-        Ok(Self::on(opening::open(ExternalKind::Arm, settings)?, settings))
+    pub fn open(settings: &ExternalSettings, model: &ArmModel) -> Result<Self, DeviceError> {
+        Ok(Self::on(opening::open(ExternalKind::Arm, settings, model.joints())?, settings, model))
     }
 
     /// Opens the arm over an existing connection, with time stamps from 0 on.
@@ -54,14 +59,16 @@ impl ExternalArm {
     pub(super) fn over(
         datagrams: Box<dyn crate::transport::TransportDatagrams>,
         settings: &ExternalSettings,
+        model: &ArmModel,
     ) -> Result<Self, DeviceError> {
         settings.check(ExternalKind::Arm)?;
-        Ok(Self::on(opening::meet(datagrams, ExternalKind::Arm, settings, 0)?, settings))
+        Ok(Self::on(opening::meet(datagrams, ExternalKind::Arm, settings, model.joints(), 0)?, settings, model))
     }
 
-    fn on(line: ExternalLine, settings: &ExternalSettings) -> Self {
-        let guard = Guard::new(settings.joint_limits());
-        Self { line, guard, mode: ArmMode::Resting, joint_rad: None, last_s: None, pulled: Arc::default() }
+    fn on(line: ExternalLine, settings: &ExternalSettings, model: &ArmModel) -> Self {
+        let guard = Guard::new(settings.joint_limits(model));
+        let joints = model.joints();
+        Self { line, guard, joints, mode: ArmMode::Resting, joint_rad: None, last_s: None, pulled: Arc::default() }
     }
 
     /// Handles the arm's own report: an arm that has stopped following does not resume by itself.
@@ -84,19 +91,18 @@ impl ExternalArm {
 }
 
 /// Returns the reading in a datagram if its numbers are possible; the driver fills in whether the arm is servoing.
-fn reading(datagram: &Datagram) -> Option<ArmReading> {
-    let of = |first: usize| -> [f64; ARM_JOINTS] { std::array::from_fn(|joint| datagram.numbers[first + joint]) };
-    let value = ArmReading {
-        joint_rad: of(0),
-        joint_rad_s: of(ARM_JOINTS),
-        joint_nm: of(2 * ARM_JOINTS),
-        servoing: datagram.has(status::ON),
+fn reading(datagram: &Datagram, joints: usize) -> Option<ArmReading> {
+    let of = |group: usize| -> [f64; ARM_JOINTS] {
+        let numbers = &datagram.numbers[group * joints..][..joints];
+        std::array::from_fn(|joint| numbers.get(joint).copied().unwrap_or(0.0))
     };
+    let value =
+        ArmReading { joint_rad: of(0), joint_rad_s: of(1), joint_nm: of(2), servoing: datagram.has(status::ON) };
     let within = |values: &[f64; ARM_JOINTS], limit: f64| values.iter().all(|value| value.abs() <= limit);
     let possible = within(&value.joint_rad, ANGLE_MAX_RAD)
         && within(&value.joint_rad_s, SPEED_MAX_RAD_S)
         && within(&value.joint_nm, TORQUE_MAX_NM);
-    possible.then_some(value)
+    (possible && datagram.joints == joints).then_some(value)
 }
 
 impl Device for ExternalArm {
@@ -106,7 +112,8 @@ impl Device for ExternalArm {
         if self.pulled.swap(false, Ordering::AcqRel) {
             self.leave_servoing();
         }
-        let newest = self.line.receive(now_s, reading);
+        let joints = self.joints;
+        let newest = self.line.receive(now_s, |datagram| reading(datagram, joints));
         if let Some((stamped, _)) = &newest {
             self.joint_rad = Some(stamped.value.joint_rad);
             self.follow(stamped.value.servoing);
@@ -118,7 +125,7 @@ impl Device for ExternalArm {
         let on = self.mode != ArmMode::Resting;
         let held_rad = self.joint_rad.unwrap_or_default();
         let command_rad = if on { *self.guard.command_rad() } else { held_rad };
-        self.line.report(on, &command_rad);
+        self.line.report(on, &command_rad[..self.joints]);
         let (mut stamped, _) = newest?;
         stamped.value.servoing = self.mode == ArmMode::Servoing;
         Some(stamped)

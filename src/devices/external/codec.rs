@@ -3,6 +3,7 @@
 //! Little-endian; a header of 48 bytes, in readings 40 bytes of names, then numbers (`f64`), then the checksum.
 
 use super::settings::ExternalKind;
+use crate::ARM_JOINTS;
 
 /// First bytes of every datagram.
 pub const MAGIC: [u8; 4] = *b"NIMX";
@@ -11,8 +12,11 @@ pub const VERSION: u8 = 1;
 /// Maximum length of a datagram, bytes: the reading of an arm.
 pub const BYTES_MAX: usize = HEADER_BYTES + NAMES_BYTES + 8 * NUMBERS_MAX + CRC_BYTES;
 /// Maximum number of values in a datagram: angle, speed and torque of seven joints.
-pub const NUMBERS_MAX: usize = 21;
+pub const NUMBERS_MAX: usize = 3 * ARM_JOINTS;
+/// Numbers of joints that an arm may have; the length of its datagrams shows which.
+const JOINTS: [usize; 2] = [ARM_JOINTS, ARM_JOINTS - 1];
 
+// Lengths of the parts of a datagram (`docs/external-device.md`); changing one makes a new version of the protocol.
 const HEADER_BYTES: usize = 48;
 const PRODUCT_BYTES: usize = 24;
 const SERIAL_BYTES: usize = 16;
@@ -54,6 +58,7 @@ pub enum ExternalMessage {
 }
 
 impl ExternalMessage {
+    // The highest bit distinguishes the datagrams to a device from those of the device.
     const COMMAND: u8 = 0x80;
 
     const fn code(self) -> u8 {
@@ -68,18 +73,19 @@ impl ExternalMessage {
         Some(if code & Self::COMMAND == 0 { Self::Reading(kind) } else { Self::Command(kind) })
     }
 
-    pub const fn numbers(self) -> usize {
+    /// Returns the number of values; `joints` counts only for an arm.
+    pub const fn numbers(self, joints: usize) -> usize {
         match self {
             // Position, orientation (w, x, y, z), velocity, gripper.
             Self::Reading(ExternalKind::Handle) => 11,
             // Angle, speed and torque of each joint.
-            Self::Reading(ExternalKind::Arm) => 21,
+            Self::Reading(ExternalKind::Arm) => 3 * joints,
             // Force, torque, acceleration, angular velocity, temperature.
             Self::Reading(ExternalKind::Sensor) => 13,
             // Force on the hand, force on the gripper.
             Self::Command(ExternalKind::Handle) => 4,
             // Angle of each joint.
-            Self::Command(ExternalKind::Arm) => 7,
+            Self::Command(ExternalKind::Arm) => joints,
             Self::Command(ExternalKind::Sensor) => 0,
         }
     }
@@ -91,8 +97,8 @@ impl ExternalMessage {
         }
     }
 
-    pub const fn bytes(self) -> usize {
-        HEADER_BYTES + self.names_bytes() + 8 * self.numbers() + CRC_BYTES
+    pub const fn bytes(self, joints: usize) -> usize {
+        HEADER_BYTES + self.names_bytes() + 8 * self.numbers(joints) + CRC_BYTES
     }
 }
 
@@ -119,6 +125,8 @@ pub struct Datagram {
     pub product: [u8; PRODUCT_BYTES],
     /// Serial number, padded with zeros; only in readings.
     pub serial: [u8; SERIAL_BYTES],
+    /// Number of an arm's joints, 6 or 7; 7 in datagrams of other devices.
+    pub joints: usize,
     /// The values, see [`ExternalMessage::numbers`]; the others are 0.
     pub numbers: [f64; NUMBERS_MAX],
 }
@@ -145,6 +153,7 @@ impl Datagram {
             buttons: 0,
             product: [0; PRODUCT_BYTES],
             serial: [0; SERIAL_BYTES],
+            joints: ARM_JOINTS,
             numbers: [0.0; NUMBERS_MAX],
         }
     }
@@ -160,7 +169,7 @@ impl Datagram {
 
     /// Writes the datagram with its checksum to the beginning of `buffer`; returns its length.
     pub fn encode(&self, buffer: &mut [u8; BYTES_MAX]) -> usize {
-        let length = self.message.bytes();
+        let length = self.message.bytes(self.joints);
         let body = length - CRC_BYTES;
         buffer[..4].copy_from_slice(&MAGIC);
         buffer[4] = VERSION;
@@ -218,9 +227,8 @@ impl Datagram {
         let message = ExternalMessage::of(bytes[5]).ok_or(NoDatagram::Shape)?;
         let (body, crc) = bytes.split_at(bytes.len() - CRC_BYTES);
         let report = usize::from(u16::from_le_bytes([body[6], body[7]]));
-        if bytes.len() != message.bytes() || report != body.len() - HEADER_BYTES {
-            return Err(NoDatagram::Shape);
-        }
+        let joints = JOINTS.into_iter().find(|joints| message.bytes(*joints) == bytes.len());
+        let joints = joints.filter(|_| report == body.len() - HEADER_BYTES).ok_or(NoDatagram::Shape)?;
         if crc32fast::hash(body).to_le_bytes() != *crc {
             return Err(NoDatagram::Checksum);
         }
@@ -233,6 +241,7 @@ impl Datagram {
             status: u16::from_le_bytes(part(body, 36)),
             fault: u16::from_le_bytes(part(body, 38)),
             buttons: u32::from_le_bytes(part(body, 40)),
+            joints,
             ..Self::blank(message)
         };
         let names = HEADER_BYTES + message.names_bytes();
@@ -276,7 +285,9 @@ mod tests {
 
     #[test]
     fn every_kind_goes_to_the_wire_and_back_and_no_changed_byte_passes() {
-        for message in every() {
+        for (message, joints) in every().flat_map(|message| JOINTS.map(|joints| (message, joints))) {
+            // Only an arm's datagrams depend on its joints.
+            let joints = if message.bytes(joints) == message.bytes(ARM_JOINTS) { ARM_JOINTS } else { joints };
             let mut datagram = Datagram {
                 session: 0x0102_0304,
                 sequence: u32::MAX,
@@ -286,18 +297,19 @@ mod tests {
                 status: status::ON | status::HAS_GRIPPER,
                 fault: 0xBEEF,
                 buttons: 5,
+                joints,
                 ..Datagram::blank(message)
             };
             if matches!(message, ExternalMessage::Reading(_)) {
                 datagram.product = padded("a handle");
                 datagram.serial = padded("SN-1");
             }
-            for (place, number) in datagram.numbers.iter_mut().take(message.numbers()).enumerate() {
+            for (place, number) in datagram.numbers.iter_mut().take(message.numbers(joints)).enumerate() {
                 *number = place as f64 - 0.125;
             }
             let mut wire = [0xAA; BYTES_MAX];
             let length = datagram.encode(&mut wire);
-            assert_eq!(length, message.bytes());
+            assert_eq!(length, message.bytes(joints));
             assert_eq!(Datagram::decode(&wire[..length]), Ok(datagram));
             for place in 0..length {
                 let mut changed = wire;

@@ -13,11 +13,13 @@ use super::{
     opening,
     settings::{ExternalKind, ExternalSettings},
 };
-use crate::{Device, DeviceError, DeviceIdentity, HandleReading, Health, Leader, Lever, TimedReading};
+use crate::{ARM_JOINTS, Device, DeviceError, DeviceIdentity, HandleReading, Health, Leader, Lever, TimedReading};
 
 /// Numbers of a handle beyond these limits are impossible: m, m/s, rad.
 const POSITION_MAX_M: f64 = 2.0;
+// Far above a hand (3 m/s); such a number can only be a wrong unit.
 const SPEED_MAX_M_S: f64 = 20.0;
+// Just above half a turn.
 const GRIPPER_MAX_RAD: f64 = 3.2;
 /// Maximum deviation of a quaternion's length from 1: rounding, even to 32 bits, gives 1e-7, so that a larger deviation
 /// is a mistake in the user's program.
@@ -40,7 +42,7 @@ impl ExternalHandle {
     /// # Errors
     /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of a handle sends and receives.
     pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
-        Ok(Self::on(opening::open(ExternalKind::Handle, settings)?, settings))
+        Ok(Self::on(opening::open(ExternalKind::Handle, settings, ARM_JOINTS)?, settings))
     }
 
     /// Opens the handle over an existing connection, with time stamps from 0 on.
@@ -50,7 +52,7 @@ impl ExternalHandle {
         settings: &ExternalSettings,
     ) -> Result<Self, DeviceError> {
         settings.check(ExternalKind::Handle)?;
-        Ok(Self::on(opening::meet(datagrams, ExternalKind::Handle, settings, 0)?, settings))
+        Ok(Self::on(opening::meet(datagrams, ExternalKind::Handle, settings, ARM_JOINTS, 0)?, settings))
     }
 
     fn on(line: ExternalLine, settings: &ExternalSettings) -> Self {

@@ -264,10 +264,13 @@ impl ExternalLine {
     }
 }
 
-/// Returns a command of this kind with these values; missing ones are 0.
+/// Returns a command of this kind with these values, for an arm one for each joint; missing ones are 0.
 pub(super) fn command_of(kind: ExternalKind, on: bool, numbers: &[f64]) -> Datagram {
     let mut command = Datagram::blank(ExternalMessage::Command(kind));
     command.status = if on { status::ON } else { 0 };
+    if kind == ExternalKind::Arm {
+        command.joints = numbers.len();
+    }
     command.numbers.iter_mut().zip(numbers).for_each(|(to, number)| *to = *number);
     command
 }

@@ -11,20 +11,25 @@ use super::{
     settings::{ExternalKind, ExternalSettings},
 };
 use crate::{
-    DeviceError, DeviceIdentity, same_serial,
+    ARM_JOINTS, DeviceError, DeviceIdentity, same_serial,
     transport::{TransportDatagrams, Udp},
 };
 
 /// Time limit for the first datagram, and then for one that shows that our answer was received.
 const FIRST_MAX: Duration = Duration::from_millis(300);
 const ANSWER_MAX: Duration = Duration::from_millis(200);
+// Half a period of a 1 kHz device.
 const NAP: Duration = Duration::from_micros(500);
 
-/// Listens at the address of the rig file. May take half a second.
-pub(super) fn open(kind: ExternalKind, settings: &ExternalSettings) -> Result<ExternalLine, DeviceError> {
+/// Listens at the address of the rig file; `joints` counts only for an arm. May take half a second.
+pub(super) fn open(
+    kind: ExternalKind,
+    settings: &ExternalSettings,
+    joints: usize,
+) -> Result<ExternalLine, DeviceError> {
     settings.check(kind)?;
     let udp = Udp::listen(settings.listen, settings.peer())?;
-    meet(Box::new(udp), kind, settings, begins_us())
+    meet(Box::new(udp), kind, settings, joints, begins_us())
 }
 
 /// Returns the start of our time stamps: after all of an earlier opening, which the device's program may still
@@ -38,10 +43,11 @@ pub(super) fn meet(
     mut datagrams: Box<dyn TransportDatagrams>,
     kind: ExternalKind,
     settings: &ExternalSettings,
+    joints: usize,
     begins_us: u64,
 ) -> Result<ExternalLine, DeviceError> {
     let place = settings.place();
-    let first = first_of(&mut *datagrams, kind, settings)?;
+    let first = first_of(&mut *datagrams, kind, settings, joints)?;
     datagrams.keep_to_sender();
     let identity = DeviceIdentity {
         product: codec::name(&first.product),
@@ -73,6 +79,7 @@ fn first_of(
     datagrams: &mut dyn TransportDatagrams,
     kind: ExternalKind,
     settings: &ExternalSettings,
+    joints: usize,
 ) -> Result<Datagram, DeviceError> {
     let place = settings.place();
     let begin = Instant::now();
@@ -83,6 +90,7 @@ fn first_of(
         expected: format!("program for {} (protocol {VERSION})", kind.word()),
         found,
     };
+    let of_arm = |datagram: &Datagram| datagram.message == ExternalMessage::Reading(ExternalKind::Arm);
     while begin.elapsed() < FIRST_MAX {
         let lost = |loss: crate::Loss| DeviceError::Other { place: place.clone(), reason: loss.cause().to_owned() };
         let Some(count) = datagrams.receive(&mut buffer).map_err(lost)? else {
@@ -90,6 +98,13 @@ fn first_of(
             continue;
         };
         trouble = match Datagram::decode(&buffer[..count]) {
+            Ok(datagram) if kind == ExternalKind::Arm && of_arm(&datagram) && datagram.joints != joints => {
+                DeviceError::WrongProduct {
+                    place: place.clone(),
+                    expected: format!("program for an arm with {joints} joints"),
+                    found: format!("program for an arm with {} joints", datagram.joints),
+                }
+            }
             Ok(datagram) if datagram.message == ExternalMessage::Reading(kind) => return Ok(datagram),
             Ok(Datagram { message: ExternalMessage::Reading(found), .. }) => {
                 wrong(format!("program for {}", found.word()))
@@ -134,14 +149,18 @@ fn shake_hands(
             time_us: begins_us + u64::from(sequence),
             echo_us: newest.time_us,
             watchdog_us,
-            ..command_of(kind, false, &[])
+            ..command_of(kind, false, &[0.0; ARM_JOINTS][..first.joints])
         };
         let length = command.encode(&mut wire);
         datagrams.send(&wire[..length]).ok()?;
         sleep(NAP);
         while let Some(count) = datagrams.receive(&mut buffer).ok()? {
             let received = Datagram::decode(&buffer[..count]).ok();
-            let own = |received: &Datagram| received.session == first.session && received.message == first.message;
+            let own = |received: &Datagram| {
+                received.session == first.session
+                    && received.message == first.message
+                    && received.joints == first.joints
+            };
             newest = received.filter(own).unwrap_or(newest);
             if newest.echo_us > begins_us && newest.sequence != first.sequence {
                 return Some(OpeningResult { newest, sequence, begins_us });

@@ -1,6 +1,6 @@
 use std::net::{IpAddr, SocketAddr};
 
-use nima_core::kinematics::JointLimits;
+use nima_core::kinematics::{ArmModel, JointLimits};
 use serde::{Deserialize, Serialize};
 
 use crate::DeviceError;
@@ -8,7 +8,6 @@ use crate::DeviceError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExternalKind {
     Handle,
-    /// An arm with the joints of a Gen3.
     Arm,
     Sensor,
 }
@@ -69,7 +68,7 @@ pub struct ExternalSettings {
     /// Handle: maximum force of the gripper, N, 0 to 10; none if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gripper_max_n: Option<f64>,
-    /// Arm: fraction of a Gen3's joint speeds that commands may use, above 0 to 1; 0.3 if omitted.
+    /// Arm: fraction of the arm's joint speeds that commands may use, above 0 to 1; 0.3 if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_fraction: Option<f64>,
     /// Arm: maximum lead of a commanded angle over the measured one, rad, above 0 to 0.2; 0.05 if omitted.
@@ -116,8 +115,8 @@ impl ExternalSettings {
     }
 
     /// Returns the limits of an arm's joints: the planner keeps to them, the driver checks them.
-    pub fn joint_limits(&self) -> JointLimits {
-        JointLimits::of_arm(self.speed_fraction.unwrap_or(0.3), self.lead_rad.unwrap_or(0.05))
+    pub fn joint_limits(&self, model: &ArmModel) -> JointLimits {
+        JointLimits::of_arm(model, self.speed_fraction.unwrap_or(0.3), self.lead_rad.unwrap_or(0.05))
     }
 
     pub fn is_inertial(&self) -> bool {

@@ -1,6 +1,7 @@
 //! The drivers with a device program that lives in the test.
 
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
+use nima_core::kinematics::{ArmChain, ArmModel, ChainJoint};
 
 use super::{
     ExternalArm, ExternalHandle, ExternalKind, ExternalSensor, ExternalSettings, READS_MAX,
@@ -30,12 +31,18 @@ impl Fixture {
     /// Creates the program, and the other end for the driver. Two datagrams are pending there; the second one shows
     /// that an answer was received.
     fn new(kind: ExternalKind) -> (Self, MemoryDatagrams) {
+        Self::with(kind, ARM_JOINTS)
+    }
+
+    /// The same for an arm with this number of joints.
+    fn with(kind: ExternalKind, joints: usize) -> (Self, MemoryDatagrams) {
         let [wire, other] = MemoryDatagrams::pair();
         let next = Datagram {
             session: 77,
             watchdog_us: 20_000,
             product: padded("test device"),
             serial: padded("T-1"),
+            joints,
             ..Datagram::blank(ExternalMessage::Reading(kind))
         };
         let mut this = Self { wire, next, received: None, now_s: 5.0 };
@@ -272,7 +279,7 @@ const START_RAD: [f64; ARM_JOINTS] = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.9
 #[test]
 fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
     let (mut bench, wire) = Fixture::new(ExternalKind::Arm);
-    let mut arm = ExternalArm::over(Box::new(wire), &settings()).unwrap();
+    let mut arm = ExternalArm::over(Box::new(wire), &settings(), &ArmModel::GEN3).unwrap();
     bench.next.numbers[..ARM_JOINTS].copy_from_slice(&START_RAD);
     let tick = |bench: &mut Fixture, arm: &mut ExternalArm| {
         bench.receive();
@@ -318,6 +325,57 @@ fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
     assert!(!bench.poll(&mut arm).unwrap().servoing);
     bench.receive();
     assert!(!bench.received.unwrap().has(status::ON));
+}
+
+/// Six joints: those of a Gen3 without its last one, which is enough for the driver.
+fn six_joints() -> ArmModel {
+    let joint = ChainJoint {
+        from_previous: Isometry3::translation(0.0, 0.0, 0.1),
+        axis: Vector3::z(),
+        range_rad: [-1.0, 2.0],
+        speed_rad_s: 1.0,
+        acceleration_rad_s2: 2.0,
+    };
+    ArmModel::new(&ArmChain { joints: vec![joint; 6], last_from_flange: Isometry3::identity() }).unwrap()
+}
+
+#[test]
+fn an_arm_of_six_joints_sends_and_gets_six_numbers_and_keeps_to_its_own_ranges() {
+    let (mut bench, wire) = Fixture::with(ExternalKind::Arm, 6);
+    let mut arm = ExternalArm::over(Box::new(wire), &settings(), &six_joints()).unwrap();
+    let tick = |bench: &mut Fixture, arm: &mut ExternalArm| {
+        bench.receive();
+        let asked = bench.received.filter(|command| command.has(status::ON));
+        bench.next.status = if asked.is_some() { status::ON } else { 0 };
+        bench.next.numbers[..6]
+            .copy_from_slice(&asked.map_or([-0.99; 6], |command| command.numbers[..6].try_into().unwrap()));
+        bench.next.numbers[6..18].fill(0.25);
+        bench.send();
+        bench.poll(arm).unwrap()
+    };
+    arm.enter_servoing();
+    for _ in 0..4 {
+        let reading = tick(&mut bench, &mut arm);
+        arm.enter_servoing();
+        assert_eq!((reading.joint_rad_s[5], reading.joint_nm[5], reading.joint_rad_s[6]), (0.25, 0.25, 0.0));
+    }
+    assert!(tick(&mut bench, &mut arm).servoing);
+    assert_eq!(bench.received.unwrap().joints, 6);
+    let aim = |arm: &mut ExternalArm, rad: f64| {
+        let mut target_rad = [rad; ARM_JOINTS];
+        target_rad[6] = 0.0;
+        arm.aim(&target_rad)
+    };
+    assert!(aim(&mut arm, -0.991));
+    tick(&mut bench, &mut arm);
+    assert!(!aim(&mut arm, -1.001), "below the lower limit");
+}
+
+#[test]
+fn an_arm_with_another_number_of_joints_is_refused_with_both_numbers() {
+    let (_bench, wire) = Fixture::with(ExternalKind::Arm, 6);
+    let refused = ExternalArm::over(Box::new(wire), &settings(), &ArmModel::GEN3).err().unwrap().to_string();
+    assert!(refused.contains("arm with 6 joints") && refused.contains("arm with 7 joints"), "{refused}");
 }
 
 #[test]

@@ -27,6 +27,7 @@ pub const SILENCE_S: f64 = 0.020;
 /// Capacity of the queues of reports and commands: 32 ms at the highest rate (2 kHz), so that a late loop loses no
 /// report before the device counts as lost.
 pub(super) const QUEUE: usize = 64;
+// Reports of the device (lost, refused): few, and the loop takes them in every tick.
 const EVENTS: usize = 32;
 /// Time limit for the first reading while opening.
 const FIRST_READING_MAX: Duration = Duration::from_secs(1);

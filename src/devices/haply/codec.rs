@@ -23,6 +23,7 @@ pub const STATE_BYTES: usize = 25;
 
 /// A state beyond these limits is impossible: m, m/s. The arms of an Inverse3 are shorter than half a metre.
 const REACH_MAX_M: f32 = 1.0;
+// Ten times the fastest arm movement (`HAND_MAX_M_S` in `nima_core`).
 const SPEED_MAX_M_S: f32 = 30.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -14,6 +14,7 @@ use crate::{DeviceError, DeviceIdentity, Loss, same_serial, transport::ByteStrea
 /// Maximum time for one answer, and number of requests for it, because buffered data may arrive first.
 const ANSWER_MAX: Duration = Duration::from_millis(100);
 const ATTEMPTS: usize = 3;
+// Polling faster would only cost processor time.
 const NAP: Duration = Duration::from_micros(500);
 
 impl DeviceInfo {

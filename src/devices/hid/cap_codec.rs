@@ -48,11 +48,14 @@ pub enum BadReport {
     Content,
 }
 
+// Report ids of 3Dconnexion devices: 6 bytes of motion, 6 of rotation (or all 12 in the first), and a bit map of
+// buttons.
 const TRANSLATION: u8 = 0x01;
 const ROTATION: u8 = 0x02;
 const BUTTONS: u8 = 0x03;
 /// Id of the output report for the light.
 const LIGHT: u8 = 0x04;
+// Wireless models: charge in per cent and whether it is charging.
 const BATTERY: u8 = 0x17;
 
 /// Returns the output report that switches the light on or off.

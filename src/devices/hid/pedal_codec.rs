@@ -9,6 +9,7 @@ use super::cap_codec::BadReport;
 
 /// Number of keys that can be distinguished.
 pub const KEYS_MAX: usize = 8;
+/// A boot keyboard's report: modifiers, a reserved byte, six keys (HID 1.11, appendix B.1).
 pub const LENGTH_MAX: usize = 8;
 
 /// Maximum place of a switch in a report: byte and bit.
@@ -29,7 +30,9 @@ pub enum PedalLayout {
 
 /// Bits of the switches of a [`PedalLayout::Switches`] pedal.
 const SWITCHES: u8 = 0b111;
+/// See [`LENGTH_MAX`].
 const KEYBOARD_LENGTH: usize = 8;
+/// One byte of switches and one unused (VEC Infinity IN-USB-2).
 const SWITCHES_LENGTH: usize = 2;
 /// Codes 1 to 3 are error codes of a keyboard that cannot determine which keys are pressed.
 const FIRST_KEY: u8 = 4;

@@ -20,7 +20,9 @@ use crate::{DeviceError, Loss, transport::TransportDatagrams};
 
 /// The daemon's default socket.
 pub const SOCKET: &str = "/var/run/spnav.sock";
+/// Eight 32-bit numbers in the machine's byte order (protocol version 0).
 pub const EVENT_LENGTH: usize = 32;
+/// First number of an event.
 const MOTION: i32 = 0;
 const PRESS: i32 = 1;
 const RELEASE: i32 = 2;

@@ -25,6 +25,7 @@ pub const MAXIMUM_TORQUE: u32 = 0x20;
 /// Actuator, bank A: a cyclic command was missed.
 pub const COMMUNICATION_TICK_LOST: u32 = 0x40_0000;
 
+// One text per bit of fault bank A, from bit 0 on (Kortex API 2).
 const BASE: [&str; 31] = [
     "firmware update failed",
     "external communication error",
@@ -59,6 +60,7 @@ const BASE: [&str; 31] = [
     "arm near an illegal position (singularity)",
 ];
 
+// One text per bit of fault bank A, from bit 0 on (Kortex API 2).
 const ACTUATOR: [&str; 29] = [
     "following error",
     "too fast",

@@ -23,7 +23,9 @@ use crate::stream_buffer::Unread;
 
 /// Start of every packet on TCP.
 pub const MARK: [u8; 8] = *b"\x07xEtRoK\x07";
+// A big-endian number after the magic bytes (vendor client, `TCPTransport`).
 const LENGTH_BYTES: usize = 4;
+// Version of the header and of every service, in the upper four bits (Kortex API 2).
 const VERSION: u32 = 1;
 
 /// Types of frames that are used.

@@ -4,12 +4,12 @@
 //! Angles in rad, lengths in m, in the arm's base frame.
 
 use nalgebra::{Isometry3, IsometryMatrix3, Matrix6, SMatrix, UnitQuaternion, Vector6};
-use nima_core::kinematics::{JointChain, Joints};
+use nima_core::kinematics::{ArmModel, JointChain, Joints};
 
 use crate::ARM_JOINTS;
 
 fn chain(joint_rad: &[f64; ARM_JOINTS]) -> JointChain {
-    JointChain::new(&IsometryMatrix3::identity(), &Joints::from(*joint_rad))
+    JointChain::new(&ArmModel::GEN3, &IsometryMatrix3::identity(), &Joints::from(*joint_rad))
 }
 
 /// Returns position and orientation of the tool in the base frame.
@@ -33,6 +33,7 @@ pub fn jacobian(joint_rad: &[f64; ARM_JOINTS]) -> SMatrix<f64, 6, ARM_JOINTS> {
 
 /// Returns the joint speeds, rad/s, that move the tool with `twist` (base frame), with damping near singular poses.
 pub fn joint_speeds(joint_rad: &[f64; ARM_JOINTS], twist: &Vector6<f64>) -> [f64; ARM_JOINTS] {
+    // The square of 0.01: singular values below that are damped, which limits joint speeds near a singular pose.
     const DAMPING: f64 = 1e-4;
     let jacobian = jacobian(joint_rad);
     let damped = jacobian * jacobian.transpose() + Matrix6::identity() * DAMPING;

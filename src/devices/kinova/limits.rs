@@ -33,6 +33,7 @@ pub const STEP_MAX_S: f64 = 0.002;
 
 /// Returns an angle in the format of the protocol: degrees in [0, 360).
 pub fn wire_degrees(angle_rad: f64) -> f32 {
+    // The arm expects 0 to 360 degrees (`ros2_kortex` wraps commands in the same way).
     let degrees = angle_rad.to_degrees().rem_euclid(360.0) as f32;
     // An angle just below 360 can round up to 360.
     if degrees >= 360.0 { 0.0 } else { degrees }
@@ -101,18 +102,20 @@ impl Guard {
             let at = target_rad[j];
             let speed_rad_s = self.limits.speed_rad_s[j];
             // An arm that was pushed out of its range may stay there or move back.
-            if at < GEN3[j].low_rad.min(last_rad[j]) || at > GEN3[j].high_rad.max(last_rad[j]) {
+            if at < self.limits.low_rad[j].min(last_rad[j]) || at > self.limits.high_rad[j].max(last_rad[j]) {
                 return Err((j + 1, ExceededLimit::Range));
             }
             if (at - measured_rad[j]).abs() > speed_rad_s.mul_add(braking_s, self.limits.lead_rad) {
                 return Err((j + 1, ExceededLimit::Lead));
             }
+            // The joint that needs longest at its speed limit decides.
             let time_s = (at - last_rad[j]).abs() / speed_rad_s;
             if time_s > self.allowed_s {
                 return Err((j + 1, ExceededLimit::Speed));
             }
             needed_s = needed_s.max(time_s);
         }
+        // Only after all joints have been checked: a refused target costs nothing.
         self.allowed_s -= needed_s;
         self.target_rad = Some(*target_rad);
         Ok(())
@@ -134,6 +137,7 @@ impl Guard {
 
     /// Returns the commands to send, `elapsed_s` after the previous ones.
     pub fn step(&mut self, elapsed_s: f64) -> &[f64; ARM_JOINTS] {
+        // The clock did not advance, so no motion is permitted.
         if elapsed_s <= 0.0 {
             return &self.command_rad;
         }
@@ -154,9 +158,10 @@ impl Guard {
             let fraction = if left_s > step_s { 1.0 - step_s / left_s } else { 0.0 };
             for j in 0..ARM_JOINTS {
                 self.speed_rad_s[j] *= fraction;
-                let low_rad = GEN3[j].low_rad;
-                let high_rad = GEN3[j].high_rad;
+                let low_rad = self.limits.low_rad[j];
+                let high_rad = self.limits.high_rad[j];
                 let at = self.command_rad[j];
+                // An arm that was pushed beyond its range may stop there.
                 self.command_rad[j] = (at + self.speed_rad_s[j] * step_s).clamp(low_rad.min(at), high_rad.max(at));
             }
         }
@@ -167,6 +172,8 @@ impl Guard {
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "the guard passes commands on unchanged, to the last bit")]
 mod tests {
+    use nima_core::kinematics::ArmModel;
+
     use super::*;
 
     const TICK_S: f64 = 1e-3;
@@ -183,7 +190,7 @@ mod tests {
     }
 
     fn resting(fraction: f64) -> Guard {
-        let mut guard = Guard::new(JointLimits::of_arm(fraction, 0.05));
+        let mut guard = Guard::new(JointLimits::of_arm(&ArmModel::GEN3, fraction, 0.05));
         guard.seed(&[0.0; ARM_JOINTS]);
         guard
     }
@@ -247,7 +254,7 @@ mod tests {
 
     #[test]
     fn braking_slows_all_joints_down_by_one_factor_and_within_their_accelerations() {
-        let limits = JointLimits::of_arm(1.0, 0.05);
+        let limits = JointLimits::of_arm(&ArmModel::GEN3, 1.0, 0.05);
         let mut guard = resting(1.0);
         let speed: [f64; ARM_JOINTS] = std::array::from_fn(|j| GEN3[j].speed_rad_s * (0.3 + 0.1 * j as f64));
         let mut target = [0.0; ARM_JOINTS];

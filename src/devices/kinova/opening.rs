@@ -10,6 +10,7 @@ use std::{
     time::Duration,
 };
 
+use nima_core::kinematics::ArmModel;
 use prost::Message;
 
 use super::{
@@ -20,7 +21,7 @@ use super::{
     session::{KinovaFailure, KinovaLines},
     settings::KinovaSettings,
 };
-use crate::{ARM_JOINTS, DeviceError, DeviceIdentity};
+use crate::{DeviceError, DeviceIdentity};
 
 /// A person's request to clear the faults of an arm. It is kept until the arm is next opened, because an arm in fault
 /// is never connected.
@@ -37,26 +38,30 @@ impl FaultClearing {
 /// Time that the arm needs after clearing.
 const CLEARED: Duration = Duration::from_millis(100);
 
-/// Opens the arm. Faults are reported, not cleared.
+/// Opens a Gen3 with seven joints. Faults are reported, not cleared.
 ///
 /// # Errors
 /// [`DeviceError`] if the arm cannot be reached, refuses the user, or is in a fault or another state in which it cannot be
 /// used.
 pub fn open(settings: &KinovaSettings) -> Result<KinovaDriver, DeviceError> {
-    open_clearing(settings, &FaultClearing::default())
+    open_clearing(settings, &ArmModel::GEN3, &FaultClearing::default())
 }
 
-/// Opens the arm, after clearing its faults if that was requested.
+/// Opens an arm of this model, after clearing its faults if that was requested.
 ///
 /// # Errors
 /// The errors of [`open`].
-pub fn open_clearing(settings: &KinovaSettings, clearing: &FaultClearing) -> Result<KinovaDriver, DeviceError> {
+pub fn open_clearing(
+    settings: &KinovaSettings,
+    model: &ArmModel,
+    clearing: &FaultClearing,
+) -> Result<KinovaDriver, DeviceError> {
     settings.check()?;
     let mut lines = KinovaLines::connect(settings)?;
     lines.log_in(settings)?;
-    let opened = prepare(&mut lines, settings, clearing);
+    let opened = prepare(&mut lines, settings, model.joints(), clearing);
     match opened {
-        Ok((identity, feedback)) => Ok(KinovaDriver::new(settings, lines, identity, &feedback)),
+        Ok((identity, feedback)) => Ok(KinovaDriver::new(settings, model, lines, identity, &feedback)),
         Err(trouble) => {
             // Close the sessions, because the arm would otherwise keep them until they time out.
             super::driver::close_sessions(&mut lines);
@@ -68,11 +73,12 @@ pub fn open_clearing(settings: &KinovaSettings, clearing: &FaultClearing) -> Res
 fn prepare(
     lines: &mut KinovaLines,
     settings: &KinovaSettings,
+    expected: usize,
     clearing: &FaultClearing,
 ) -> Result<(DeviceIdentity, KinovaFeedback), DeviceError> {
     let joints: KinovaNumber = ask(lines, Rpc::ACTUATOR_COUNT)?;
-    if joints.value as usize != ARM_JOINTS {
-        let expected = format!("arm with {ARM_JOINTS} joints");
+    if joints.value as usize != expected {
+        let expected = format!("arm with {expected} joints");
         let found = format!("arm with {} joints", joints.value);
         return Err(DeviceError::WrongProduct { place: lines.place.clone(), expected, found });
     }
@@ -93,7 +99,7 @@ fn prepare(
         let cure = "Wait until the arm has started, or stop its current action on its web page.".to_owned();
         return Err(DeviceError::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
     }
-    let feedback = first_feedback(lines)?;
+    let feedback = first_feedback(lines, expected)?;
     let faults = KinovaFaults { in_fault: state == ArmState::IN_FAULT, ..KinovaFaults::of(&feedback) };
     if faults.any() {
         return Err(DeviceError::DeviceFault {
@@ -114,11 +120,10 @@ fn check_serial(settings: &KinovaSettings, identity: &DeviceIdentity, place: &st
     Err(DeviceError::OtherSerial { place: place.to_owned(), expected: wanted.clone(), found: found.to_owned() })
 }
 
-fn first_feedback(lines: &mut KinovaLines) -> Result<KinovaFeedback, DeviceError> {
+fn first_feedback(lines: &mut KinovaLines, joints: usize) -> Result<KinovaFeedback, DeviceError> {
     let answer = lines.ask_cyclic(Rpc::REFRESH_FEEDBACK, &());
     let payload = answer.map_err(|failure| failure.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))?;
-    let feedback =
-        KinovaFeedback::decode(&payload).ok().filter(|report| report.is_finite() && report.count == ARM_JOINTS);
+    let feedback = KinovaFeedback::decode(&payload).ok().filter(|report| report.is_finite() && report.count == joints);
     feedback.ok_or_else(|| KinovaFailure::Nonsense.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))
 }
 

@@ -30,6 +30,7 @@ const SESSION_INACTIVITY_MS: u32 = 10_000;
 const CONNECTION_INACTIVITY_MS: u32 = 2_000;
 /// Requests are repeated after this time during opening, because a datagram may be lost.
 const AGAIN: Duration = Duration::from_millis(200);
+// A fifth of the arm's period of 1 ms.
 const NAP: Duration = Duration::from_micros(200);
 
 /// Numbers requests and encodes them into a buffer that is allocated once.
@@ -48,6 +49,7 @@ impl Caller {
 
     /// Returns the bytes of a request, and its number. Numbers start at 1 and wrap.
     pub(super) fn request(&mut self, rpc: Rpc, payload: &impl Message) -> (u16, &[u8]) {
+        // 16 bits in the header; after the last number the count continues at 0.
         self.message = self.message.wrapping_add(1);
         let Rpc { service, function } = rpc;
         let header = KinovaHeader {
@@ -134,6 +136,7 @@ impl KinovaLines {
             ) => DeviceError::RefusedLogin { place: place.to_owned(), user: settings.user.clone() },
             other => other.trouble(place, Rpc::CREATE_SESSION),
         };
+        // TCP and UDP are separate connections for the arm: each needs its own session.
         self.ask(Rpc::CREATE_SESSION, &login).map_err(|failure| trouble(failure, &self.place))?;
         let place = format!("{} UDP port {}", settings.host, settings.udp_port);
         self.ask_cyclic(Rpc::CREATE_SESSION, &login).map_err(|failure| match failure {
@@ -165,6 +168,7 @@ impl KinovaLines {
             }
             sleep(NAP);
         }
+        // Unknown bytes instead of silence show another protocol at this port.
         let dirty = (self.packets.skipped, self.packets.damaged) != before;
         Err(if dirty { KinovaFailure::Nonsense } else { KinovaFailure::Silent })
     }
@@ -180,6 +184,7 @@ impl KinovaLines {
         let end = Instant::now() + self.timeout;
         let mut dirty = false;
         while Instant::now() < end {
+            // A new number for each repetition, so that a late answer is not mistaken for the newest.
             let (number, bytes) = self.cyclic.request(rpc, question);
             self.udp.send(bytes).map_err(|_| KinovaFailure::Lost)?;
             let again = (Instant::now() + AGAIN).min(end);

@@ -1,4 +1,4 @@
-use nima_core::kinematics::JointLimits;
+use nima_core::kinematics::{ArmModel, JointLimits};
 use serde::{Deserialize, Serialize};
 
 use super::limits::TWIST_MAX;
@@ -33,7 +33,7 @@ pub struct KinovaSettings {
 impl Default for KinovaSettings {
     fn default() -> Self {
         Self {
-            // Without the factory's address: a rig or a test must not reach an arm that nobody named.
+            // Without the factory's address: a rig or a test must not reach an arm that is not in its settings.
             host: String::new(),
             tcp_port: 10_000,
             udp_port: 10_001,
@@ -75,8 +75,8 @@ impl KinovaSettings {
     }
 
     /// Returns the limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
-    pub fn joint_limits(&self) -> JointLimits {
-        JointLimits::of_arm(self.speed_fraction, self.lead_rad)
+    pub fn joint_limits(&self, model: &ArmModel) -> JointLimits {
+        JointLimits::of_arm(model, self.speed_fraction, self.lead_rad)
     }
 
     /// Checks every value.

@@ -4,6 +4,7 @@
 
 use crc::{CRC_16_ARC, Crc};
 
+// CRC-16/ARC: polynomial 0x8005 reflected, initial value 0 (the checksum of `ndicapi`).
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_ARC);
 
 pub fn crc16(bytes: &[u8]) -> u16 {

@@ -11,6 +11,7 @@ pub const DEFINITION: usize = 1024;
 /// Length of the used part, whose checksum is in bytes 4 and 5, little endian: the sum of all later bytes modulo 65536.
 /// Found in 18 of 18 public files.
 const USED: usize = 752;
+// Every tool definition (`.rom`) begins with these bytes; another file is refused before it is sent.
 const BEGIN: &[u8] = b"NDI\0";
 const SUMMED: std::ops::Range<usize> = 6..USED;
 
@@ -45,7 +46,7 @@ impl NdiDefinition {
         Ok(Self(bytes))
     }
 
-    /// Creates a definition with this text in place of the geometry, which only an emulated unit accepts.
+    /// Creates a definition with this text instead of the geometry, which only an emulated unit accepts.
     pub fn emulated(text: &str) -> Self {
         let mut bytes = Box::new([0; DEFINITION]);
         bytes[..BEGIN.len()].copy_from_slice(BEGIN);

@@ -29,7 +29,9 @@ const QUICK: Duration = Duration::from_millis(500);
 const SLOW: Duration = Duration::from_secs(5);
 /// Wait after `INIT` and after a change of speed, as the guide requires.
 const SETTLE: Duration = Duration::from_millis(100);
+// A connection in the same network takes milliseconds; longer waits only delay the message that nothing answers.
 const CONNECT: Duration = Duration::from_secs(2);
+// Long enough for a break at the slowest line speed (9600 bit/s: a character takes 1 ms).
 const BREAK: Duration = Duration::from_millis(250);
 
 #[derive(Debug)]

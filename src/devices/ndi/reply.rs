@@ -14,6 +14,7 @@ use crate::stream_buffer::Unread;
 const BINARY_START: [u8; 2] = [0xC4, 0xA5];
 /// Maximum length of an accepted reply, bytes including checksums. `TX` with 24 tools has 1700.
 pub const REPLY_MAX: usize = 4096;
+// Start, length and checksum of the header, two bytes each.
 const HEADER: usize = 6;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

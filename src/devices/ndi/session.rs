@@ -55,6 +55,7 @@ pub(super) enum NdiFailure {
 
 /// A damaged reply counts as finished if no bytes arrive for this time.
 const QUIET: Duration = Duration::from_millis(50);
+// Replies take milliseconds, so half a millisecond does not delay them noticeably.
 const NAP: Duration = Duration::from_micros(500);
 
 #[derive(Debug)]

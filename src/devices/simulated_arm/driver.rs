@@ -3,6 +3,8 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
+use nima_core::kinematics::ArmModel;
+
 use super::SimulatedArmSettings;
 use crate::{
     ARM_JOINTS, ArmReading, Device, DeviceError, DeviceIdentity, Follower, Health, Lever, TimedReading,
@@ -34,9 +36,9 @@ impl SimulatedArmDriver {
     ///
     /// # Errors
     /// [`DeviceError::Setting`] for a value outside its range.
-    pub fn open(settings: &SimulatedArmSettings) -> Result<Self, DeviceError> {
-        settings.check()?;
-        let mut guard = Guard::new(settings.joint_limits());
+    pub fn open(settings: &SimulatedArmSettings, model: &ArmModel) -> Result<Self, DeviceError> {
+        settings.check(model)?;
+        let mut guard = Guard::new(settings.joint_limits(model));
         guard.seed(&settings.start_rad);
         Ok(Self {
             omega_rad_s: settings.omega_rad_s(),
@@ -153,7 +155,7 @@ mod tests {
 
     #[test]
     fn it_follows_what_it_is_asked_only_while_it_servoes() {
-        let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD)).unwrap();
+        let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD), &ArmModel::GEN3).unwrap();
         let mut now_s = 0.0;
         let first = polled(&mut arm, &mut now_s, 1);
         assert_eq!((first.joint_rad, first.servoing), (START_RAD, false));
@@ -179,7 +181,7 @@ mod tests {
     #[test]
     fn what_is_beyond_its_limits_is_refused_and_ends_servoing() {
         for bad in [START_RAD.map(|rad| rad + 1.0), START_RAD.map(|_| f64::NAN), [9.0; ARM_JOINTS]] {
-            let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD)).unwrap();
+            let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD), &ArmModel::GEN3).unwrap();
             let mut now_s = 0.0;
             arm.enter_servoing();
             polled(&mut arm, &mut now_s, 1);
@@ -191,7 +193,7 @@ mod tests {
 
     #[test]
     fn its_lever_ends_servoing_from_another_thread() {
-        let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD)).unwrap();
+        let mut arm = SimulatedArmDriver::open(&SimulatedArmSettings::at(START_RAD), &ArmModel::GEN3).unwrap();
         let mut now_s = 0.0;
         let lever = Lever::default();
         Follower::attach(&arm, &lever);
@@ -207,7 +209,7 @@ mod tests {
         let report = |change: fn(&mut SimulatedArmSettings)| {
             let mut settings = SimulatedArmSettings::at(START_RAD);
             change(&mut settings);
-            SimulatedArmDriver::open(&settings).unwrap_err().to_string()
+            SimulatedArmDriver::open(&settings, &ArmModel::GEN3).unwrap_err().to_string()
         };
         assert!(report(|settings| settings.start_rad[1] = 2.3).contains("start_rad"));
         assert!(report(|settings| settings.start_rad[0] = f64::NAN).contains("start_rad"));

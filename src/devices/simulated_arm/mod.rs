@@ -1,4 +1,4 @@
-//! An arm without hardware: the joints of a Gen3, which follow their commands with a first-order lag. It has no
+//! An arm without hardware: joints that follow their commands with a first-order lag. It has no
 //! protocol and no emulator.
 //!
 //! For tests of a handle and a sensor without an arm. Commands are checked like those of the real arm

@@ -1,14 +1,15 @@
 use std::f64::consts::TAU;
 
-use nima_core::kinematics::{JointLimits, Joints, limit_margin_rad};
-use serde::{Deserialize, Serialize};
+use nima_core::kinematics::{ArmModel, JointLimits, Joints};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
 use crate::{ARM_JOINTS, DeviceError};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "simulated")]
 pub struct SimulatedArmSettings {
-    /// Initial joint angles, rad, at which the instrument must be in its trocar.
+    /// Initial joint angles, rad, at which the instrument must be in its trocar; zero for an unused joint.
+    #[serde(deserialize_with = "start_rad")]
     pub start_rad: [f64; ARM_JOINTS],
     /// Bandwidth of the joints, Hz, above 0 to 100.
     #[serde(default = "SimulatedArmSettings::usual_bandwidth_hz")]
@@ -45,8 +46,8 @@ impl SimulatedArmSettings {
     }
 
     /// Returns the limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
-    pub fn joint_limits(&self) -> JointLimits {
-        JointLimits::of_arm(self.speed_fraction, self.lead_rad)
+    pub fn joint_limits(&self, model: &ArmModel) -> JointLimits {
+        JointLimits::of_arm(model, self.speed_fraction, self.lead_rad)
     }
 
     /// Returns the angular frequency with which the joints follow, rad/s.
@@ -58,12 +59,14 @@ impl SimulatedArmSettings {
     ///
     /// # Errors
     /// [`DeviceError::Setting`] for the first value outside its range.
-    pub fn check(&self) -> Result<(), DeviceError> {
+    pub fn check(&self, model: &ArmModel) -> Result<(), DeviceError> {
         let refuse =
             |key: &str, value: String, allowed: String| DeviceError::Setting { key: key.to_owned(), value, allowed };
-        let margin_rad = limit_margin_rad(&Joints::from(self.start_rad));
-        if !self.start_rad.iter().all(|rad| rad.is_finite()) || margin_rad <= 0.0 {
-            let allowed = "seven angles within the ranges of the arm's joints, rad".to_owned();
+        let margin_rad = model.limit_margin_rad(&Joints::from(self.start_rad));
+        let unused = &self.start_rad[model.joints()..];
+        let is_still = unused.iter().all(|rad| *rad == 0.0);
+        if !self.start_rad.iter().all(|rad| rad.is_finite()) || margin_rad <= 0.0 || !is_still {
+            let allowed = format!("{} angles within the ranges of the arm's joints, rad", model.joints());
             return Err(refuse("start_rad", format!("{:?}", self.start_rad), allowed));
         }
         let within = |key: &str, value: f64, high: f64| {
@@ -74,4 +77,13 @@ impl SimulatedArmSettings {
         within("speed_fraction", self.speed_fraction, 1.0)?;
         within("lead_rad", self.lead_rad, 0.2)
     }
+}
+
+/// Reads one angle for each joint: an arm of six joints has six.
+fn start_rad<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; ARM_JOINTS], D::Error> {
+    let angles = Vec::<f64>::deserialize(from)?;
+    if !(ARM_JOINTS - 1..=ARM_JOINTS).contains(&angles.len()) {
+        return Err(D::Error::invalid_length(angles.len(), &"6 or 7 angles, one for each joint"));
+    }
+    Ok(std::array::from_fn(|joint| angles.get(joint).copied().unwrap_or(0.0)))
 }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
-use nima_core::kinematics::{Arm, Rcm, find};
+use nima_core::kinematics::{Rcm, find};
 use nima_devices::{ConnectionState, ForceReading, bota, simulated_arm};
 use nima_machine::{
     config::RigConfig,
@@ -35,7 +35,7 @@ fn devices(folder: &std::path::Path) -> (RigSettings, [EmulatorThread; 2]) {
     ];
     let whole = RigConfig::load("emulated").unwrap().devices.unwrap();
     let mut right = whole.right.unwrap();
-    let arm = Arm::new(&right.mount).unwrap();
+    let arm = right.kinematics().unwrap();
     let rcm = Rcm::new(&right.rcm).unwrap();
     let tip_m = right.rcm.trocar_m + right.rcm.inward.normalize() * 0.12;
     let start_rad: [f64; 7] = find(&arm, &rcm, &tip_m).unwrap().joint_rad.into();

@@ -10,6 +10,7 @@ mod own_copy;
 mod rig_file;
 mod secrets;
 mod teleoperation;
+pub mod urdf;
 
 use std::path::Path;
 
@@ -164,6 +165,8 @@ impl RigConfig {
     pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigError> {
         let mut rig: Self = parse_with("rig", path, text, rig::take_out_makes)?;
         rig.devices = rig.devices.map(|devices| devices.emulated_in(&nima_devices::own_folder::runtime_folder()));
+        let read = rig.devices.as_mut().map_or(Ok(()), |devices| devices.read_models(path));
+        read.map_err(|source| ConfigError::Device { name: rig.name.clone(), source })?;
         rig.validate()?;
         Ok(rig)
     }

@@ -194,12 +194,29 @@ impl RigFile {
     /// [`RigFileError`].
     pub fn save(&self, path: &Path) -> Result<RigConfig, RigFileError> {
         let rig = self.rig()?;
+        let text = self.in_folder_of(path).text();
         let written = path
             .parent()
             .map_or(Ok(()), std::fs::create_dir_all)
-            .and_then(|()| nima_files::write_atomically(path, |file| file.write_all(self.text().as_bytes())));
+            .and_then(|()| nima_files::write_atomically(path, |file| file.write_all(text.as_bytes())));
         written.map_err(|source| RigFileError::Write { path: path.to_owned(), source })?;
         Ok(rig)
+    }
+
+    /// Returns the file for another folder: a description of an arm with a relative path stays where it is.
+    fn in_folder_of(&self, path: &Path) -> Self {
+        let folder =
+            |file: &Path| file.parent().and_then(|folder| std::path::absolute(Path::new(".").join(folder)).ok());
+        let mut moved = self.clone();
+        let Some(from) = folder(&self.path).filter(|from| folder(path).as_ref() != Some(from)) else { return moved };
+        for side in Side::ALL {
+            let key = format!("devices.{}.model.urdf", side.word());
+            let urdf = self.item(&key).and_then(Item::as_str).filter(|urdf| Path::new(urdf).is_relative());
+            if let Some(urdf) = urdf {
+                moved.set(&key, from.join(urdf).display().to_string());
+            }
+        }
+        moved
     }
 }
 

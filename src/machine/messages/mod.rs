@@ -158,7 +158,7 @@ pub struct CalibrationReadings {
     pub view: ViewOrientation,
 }
 
-/// What the screen asks of the person at the arm.
+/// Instruction of the screen to the person at the arm.
 #[derive(Clone, Copy, Debug)]
 pub struct Guidance {
     pub prompt: Prompt,

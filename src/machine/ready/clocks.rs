@@ -31,6 +31,7 @@ impl ReadyClocks {
 }
 
 impl Item for ReadyClocks {
+    // Ticks of the other arm have the same times.
     fn tick(&mut self, tick: &Tick) {
         // One arm is enough, because both arms use the same clock.
         if self.newest.is_none_or(|newest| newest.side == tick.side) {
@@ -55,6 +56,7 @@ impl Item for ReadyClocks {
         }
         let missed = newest.timing.missed.saturating_sub(first.timing.missed);
         let made = newest.index.saturating_sub(first.index);
+        // At least one tick, so that a loop that stands still is not divided by zero.
         let fraction = missed as f64 / (missed + made).max(1) as f64;
         if fraction > MISSED_MAX {
             return PointProgress::Failed(ReadyCause::Missed { fraction });

@@ -37,6 +37,7 @@ impl Item for ReadyDevices {
 
     fn look(&mut self, now_s: f64) -> PointProgress {
         let outages = self.healths.map_or(0, |healths| healths.devices.iter().map(|health| health.outages).sum());
+        // An outage in the meantime starts the second again: a device that drops out is not steady.
         if self.missing().is_some() || self.since.is_some_and(|(_, before)| before != outages) {
             self.since = None;
             return PointProgress::Asking(PersonRequest::Nothing);
@@ -57,6 +58,7 @@ impl Item for ReadyDevices {
     }
 
     fn patience_s(&self) -> f64 {
+        // Design choice: a device that needs longer is then reported by name.
         15.0
     }
 }

@@ -22,6 +22,7 @@ const TRAVEL_M: f64 = 0.010;
 /// to this axis than to any other.
 const ASKEW_MAX_DEG: f64 = 40.0;
 /// The requested direction.
+/// One direction is enough: a swapped axis or sign turns it by at least 90 degrees.
 const WAY: ViewMove = ViewMove::Right;
 
 #[derive(Debug)]
@@ -89,6 +90,7 @@ impl Item for ReadyHandle {
     }
 
     fn look(&mut self, _now_s: f64) -> PointProgress {
+        // The check runs without permission for a force, so any force is a fault of the program.
         if self.force_n > 0.0 {
             return PointProgress::Failed(ReadyCause::HandleForce { force_n: self.force_n });
         }

@@ -18,6 +18,7 @@ pub(super) enum PointProgress {
 
 /// Time for a person to do what is requested, s. Without a limit, a check that was left alone would keep the loop idle
 /// for ever.
+/// Half a minute: an instruction has to be read, and a person may be at the other arm.
 const PATIENCE_S: f64 = 30.0;
 
 /// A check while it runs. Times are the session's, s.

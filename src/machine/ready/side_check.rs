@@ -14,8 +14,10 @@ use crate::{
 
 /// The instrument was moved when its flange is this far from its earlier position, m; a marker on it moves by at least
 /// half of that.
+/// Far more than an arm that is brushed in passing.
 const MOVED_M: f64 = 0.05;
 /// A resting part moves by less than this, m.
+/// A fifth of [`MOVED_M`], so that rest and motion cannot be confused.
 const RESTS_M: f64 = 0.010;
 
 #[derive(Clone, Copy, Debug, Default)]

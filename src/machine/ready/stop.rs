@@ -8,6 +8,7 @@ use super::{
 use crate::messages::{LoopState, Tick};
 
 /// All arms stop within this time after the first one, s on the loop's clock.
+/// Both arms stop in the same tick; a longer difference means that one of them did not receive the stop.
 const TOGETHER_S: f64 = 0.1;
 
 #[derive(Debug)]

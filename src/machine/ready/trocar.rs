@@ -16,8 +16,8 @@ use crate::{
     rig::{EngageBlocker, Healths, Side, SideSwap},
 };
 
-/// The instrument is in its trocar if the shaft passes within this distance, m: half of the limit for an engagement is
-/// far more than an unnoticed displacement of the trocar.
+/// The instrument is in its trocar if the shaft passes within this distance, m: the limit for an engagement too, so that
+/// a pair that passes this check can start.
 const NEAR_M: f64 = kinematics::START_MISS_M;
 /// The arm rests when its tip moves by less than this, m, for this time, s.
 const RESTS_M: f64 = 0.3e-3;
@@ -41,7 +41,7 @@ impl ReadyTrocar {
     pub(super) fn of(side: Side, subject: &CheckSubject) -> Self {
         let arm = subject.rig.devices.as_ref().and_then(|devices| {
             let set = devices.arm(side)?;
-            let arm = kinematics::Arm::new(&set.mount).ok()?;
+            let arm = set.kinematics().ok()?;
             let base = arm.world_from_base();
             let turn = UnitQuaternion::from_rotation_matrix(&base.rotation);
             let world_from_base = Isometry3::from_parts(base.translation, turn);

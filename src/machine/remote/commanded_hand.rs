@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 /// After a gap, the tip catches up at this speed at most, m/s, or at the hand's own speed if that is faster, so that a
 /// tip never moves faster than a hand.
+/// Above the fastest hand that a rig file permits (`desk.speed_m_s`, 0.15 m/s), so that every gap is caught up.
 const CATCH_UP_M_S: f64 = 0.18;
 
 /// Moves by the commanded displacements, and only while they are to be followed, so that a restart is not a jump.

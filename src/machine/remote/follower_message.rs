@@ -41,6 +41,7 @@ pub(super) struct FollowerMessage {
     pub(super) sides: [Option<FollowerSide>; SIDES],
 }
 
+// The order belongs to the message format, as in [`PLAIN`].
 const UNSURE: [Unsure; 3] = [Unsure::OutsideTraining, Unsure::NotMoved, Unsure::Missing];
 /// The order belongs to the message format: append new sources, and never reorder.
 const PLAIN: [ForceSource; 9] = [
@@ -60,6 +61,7 @@ fn number_of_source(source: ForceSource) -> u8 {
         return PLAIN.iter().position(|other| *other == source).unwrap_or(0) as u8;
     };
     let why = UNSURE.iter().position(|other| *other == unsure).unwrap_or(0);
+    // Two numbers for each reason, one for each fallback.
     (PLAIN.len() + 2 * why) as u8 + u8::from(fallback == Fallback::HoldAndFade)
 }
 
@@ -99,6 +101,7 @@ impl FollowerMessage {
         let mut from = Unpacker::new(message);
         let mut report = Self { t_s: from.time()?, sides: [None; SIDES] };
         while !from.is_empty() {
+            // A side that occurs twice is ambiguous; the whole message is refused.
             let place = &mut report.sides[side_of_number(from.byte()?)?.index()];
             if place.is_some() {
                 return None;
@@ -122,8 +125,10 @@ impl FollowerSide {
             self.errors_n.is_some(),
         ];
         to.byte(number_of_side(side));
+        // The first flag is the lowest bit.
         to.byte(flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)));
         let stop = self.stop.and_then(|stop| FarStop::ALL.iter().position(|other| *other == stop));
+        // Stop and source share a byte: 11 reasons and 15 sources fit into four bits each.
         to.byte(stop.map_or(0, |place| place as u8 + 1) << 4 | number_of_source(self.source));
         to.vector(&self.tip_m, PER_M);
         self.world_from_jaws.iter().for_each(|turn| to.turn(turn));

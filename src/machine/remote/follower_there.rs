@@ -1,4 +1,4 @@
-//! The follower's half at another machine, as the operator's machine knows it.
+//! The follower's half at another machine, as the operator's machine represents it.
 
 use nima_core::{
     calibration::frames::FrameSample,
@@ -50,6 +50,7 @@ struct RoundTrip {
 
 impl RoundTrip {
     /// Averaging, in messages. Design choice.
+    /// 200 messages: a fifth of a second at 1 kHz.
     const MEMORY: f64 = 200.0;
 
     fn first(seconds: f64, rate_hz: f64) -> Self {
@@ -95,6 +96,7 @@ impl FollowerThere {
             tip_m: far.tip_m,
             world_from_jaws: far.world_from_jaws,
             sensed: SensedForce::FarEnd(identified),
+            // No view crosses the link, so the mapping of the rig file applies.
             view: ViewOrientation::Fixed,
             frames: FrameSample { leader_from_handle: here.frames.leader_from_handle, ..FrameSample::default() },
             switches: here.switches,
@@ -103,7 +105,7 @@ impl FollowerThere {
             obstacle: far.is_obstructed.then_some(EngageBlocker::FarEnd),
             age_s: here.age_s,
             silent_s: now_s - received.at_s,
-            // The other machine checks the plausibility of its own devices.
+            // The other machine checks its devices for plausibility itself.
             raw: RawReadings { handle: here.raw.handle, ..RawReadings::NONE },
         })
     }
@@ -113,6 +115,7 @@ fn keep_parameters(now: &mut [Option<FollowerSide>; SIDES], before: &[Option<Fol
     for (now, before) in now.iter_mut().zip(before) {
         if let (Some(now), Some(before)) = (now, before) {
             now.packed = now.packed.or(before.packed);
+            // The newest message may omit what the previous one of the same tick contained: parameters take turns.
             now.errors_n = now.errors_n.or(before.errors_n);
         }
     }

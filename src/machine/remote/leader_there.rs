@@ -1,4 +1,4 @@
-//! The leader's half at another machine, as the follower's machine knows it: a hand that moves as commanded, and the
+//! The leader's half at another machine, as the follower's machine represents it: a hand that moves as commanded, and the
 //! operator's commands.
 
 use nalgebra::Vector3;
@@ -22,8 +22,10 @@ use crate::{
 
 /// The parameters of one rendering are sent once per this many ticks, in turn if several are computed. Fits are renewed
 /// 200 times per second.
+/// At 1 kHz every 10 ms: sending them more often would mostly repeat them.
 const PARAMETERS_EVERY: u64 = 10;
 /// The errors of the modes are sent once per this many ticks: they are only displayed, and nothing depends on them.
+/// Ten times a second, as fast as the screen shows them.
 const ERRORS_EVERY: u64 = 100;
 /// Answers continue for this long after the last message, s, so that the reason for this machine's stop reaches the other one.
 const ANSWERS_FOR_S: f64 = 1.0;
@@ -33,14 +35,17 @@ const SAME_CLOCK_S: f64 = 0.2;
 /// true delay differs by at most this fraction, or this number of ticks: a connection with jitter changes the delay by
 /// a tick every second.
 const SAME_DELAY: f64 = 0.05;
+// Two ticks: the rounding at both ends.
 const SAME_DELAY_TICKS: f64 = 2.0;
 /// Maximum number of commands from one message.
+/// More than `follow` can push for two sides: mode, comparison, delay, a stop, and one engagement each.
 const COMMANDS_MAX: usize = 8;
 
 /// Returns the rig file adapted to the follower's machine: the commanded tip is already in the frame of the world, and
 /// no hand here feels a force.
 #[must_use]
 pub fn at_follower(rig: &RigConfig) -> RigConfig {
+    // No gain: the force for the hand is rendered at the other machine, behind its gates.
     let gates = ChainSettings { gain: 0.0, ..rig.gates.without_governor() };
     RigConfig { teleoperation: Teleoperation::default(), gates, ..rig.clone() }
 }
@@ -82,6 +87,7 @@ impl LeaderThere {
         let over_s = before.map_or(0.0, |before| now.t_s - before.t_s);
         for (side, hand) in self.hands.iter_mut().enumerate() {
             match now.sides[side].zip(before.and_then(|before| before.sides[side])) {
+                // Only while both messages follow: the way between two other states is not a motion of the hand.
                 Some((now, before)) if [now.intent, before.intent] == [Intent::Follow; 2] => {
                     hand.report(&(now.tip_m - before.tip_m), over_s);
                 }
@@ -114,6 +120,7 @@ impl LeaderThere {
         let to_rest = Side::ALL.iter().any(|side| intents[side.index()] == Intent::Rest && is_driven(side));
         let engaged = Side::ALL.map(|side| moved_on(|side| side.engagements, side));
         let released = Side::ALL.into_iter().any(|side| moved_on(|side| side.releases, side));
+        // A stop precedes a release in the same message: the safe state wins.
         if to_stop {
             self.push(Command::Stop);
         } else if released {
@@ -142,6 +149,7 @@ impl HalfThere for LeaderThere {
         let mut newest = before;
         wire.receive(now_s, &mut |bytes| {
             let Some(message) = LeaderMessage::unpack(bytes) else { return };
+            // Newer only: an overtaken message must not bring back an old command.
             if newest.is_none_or(|received| message.t_s > received.message.t_s) {
                 newest = Some(OperatorState { message, at_s: now_s });
             }
@@ -182,6 +190,7 @@ impl HalfThere for LeaderThere {
     }
 
     fn outputs(&mut self, outputs: &[Outputs; SIDES]) -> [Outputs; SIDES] {
+        // The handle is at the other machine.
         outputs.each_ref().map(|outputs| Outputs { hand_force_n: Vector3::zeros(), gripper_n: 0.0, ..*outputs })
     }
 
@@ -198,6 +207,7 @@ impl HalfThere for LeaderThere {
         self.ticks += 1;
         let received = self.received.filter(|received| now_s - received.at_s <= ANSWERS_FOR_S)?;
         let turn = (self.ticks.is_multiple_of(PARAMETERS_EVERY)).then_some(self.ticks / PARAMETERS_EVERY);
+        // Never in the same tick as the parameters (every tenth), so that a message stays short.
         let sends_errors = self.ticks % ERRORS_EVERY == 1;
         // Add the time that has passed here since the command arrived.
         let t_s = received.message.t_s + (now_s - received.at_s);

@@ -10,10 +10,14 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use crate::rig::Side;
 
 /// Units per second: 48 bits cover 325 days.
+/// A tenth of a microsecond is finer than any clock on the path.
 const TIME_PER_S: f64 = 1e7;
 /// Units of 24-bit numbers: a length covers 4.2 m, a force 168 N, an angle 4.2 rad.
+/// Half a micrometre: a twentieth of the finest handle's step.
 pub(super) const PER_M: f64 = 2e6;
+// 20 uN, far below the noise of a sensor.
 pub(super) const PER_N: f64 = 5e4;
+// Half a microradian.
 pub(super) const PER_RAD: f64 = 2e6;
 /// Steps of a quaternion component other than the largest, from 0 to 1 / sqrt(2): 20 bits with its sign.
 const TURN_STEPS: f64 = 524_287.0;

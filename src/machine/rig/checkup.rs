@@ -6,7 +6,7 @@ use nima_core::frames::GRAVITY_M_S2;
 use super::{AGES, CHANNELS, Gauge, GaugeSpread, Gauges, Nominal, PartKind, RigPart};
 use crate::config::RigConfig;
 
-/// Number of 0.1 s blocks in a test; the counters of the first block are the starting values.
+/// Number of 0.1 s blocks in a test: 2 s of measurement after the first block, whose counters are the starting values.
 pub const BLOCKS: usize = 21;
 /// Maximum deviation of the rate from the nominal one, as a fraction, because devices differ from their nominal rate by
 /// a clock's tolerance only, and a wrong setting differs by far more. Design choice.
@@ -17,7 +17,9 @@ const LOST_MAX: f64 = 0.005;
 /// in order.
 const DAMAGED_MAX: f64 = 0.001;
 /// Maximum age of a reading, in periods of the device and in ticks.
+/// A reading is up to one period old when the next one is due; twice that allows for one lost reading.
 const AGE_PERIODS: f64 = 2.0;
+// The loop polls once per tick, so a reading can be nearly one tick older than it is at the device.
 const AGE_TICKS: f64 = 2.0;
 /// Maximum age of a reading of a device without a nominal rate, s: half of the age that the loop accepts.
 const AGE_MAX_S: f64 = 0.010;
@@ -26,6 +28,7 @@ const GRAVITY_OFF_M_S2: f64 = 0.3;
 /// Fraction of a range above which its end is near, because a reading at the end itself is clipped and no longer true.
 const NEAR_END: f64 = 0.95;
 /// Minimum fraction of the frames that contain a marker.
+/// Markers may be hidden for a moment: three of 60 frames.
 const SEEN_MIN: f64 = 0.95;
 /// Channels of a force sensor's accelerometer.
 const ACCELERATION: std::ops::Range<usize> = 6..9;
@@ -206,6 +209,7 @@ impl Checkup {
         }
         let max_s = self.nominal_hz.map_or(AGE_MAX_S, |hz| AGE_PERIODS / hz + AGE_TICKS * subject.period_s);
         if let Some([_, p99_s]) = self.age_s.filter(|_| Nominal::is_steady(subject.part))
+            // Half a period: ages are counted in whole periods.
             && p99_s > max_s + 0.5 * subject.period_s
         {
             self.findings.push(CheckupFinding::Late { p99_s, max_s });

@@ -43,6 +43,7 @@ pub(super) struct DeviceIdentities {
 }
 
 /// The servos have not been opened yet; are connected or missing; or belong to the other side.
+/// Numbers of an atomic: the driver's thread stores them, the loop reads them.
 const UNASKED: u8 = 0;
 const ASKED: u8 = 1;
 const EXCHANGED: u8 = 2;
@@ -91,6 +92,7 @@ impl DeviceIdentities {
     fn whose(&self, part: RigPart, serial: &str) -> Option<(RigPart, Option<&str>)> {
         let is_it = |known: Option<&str>| known.is_some_and(|known| same_serial(known, serial));
         let others = || RigPart::ALL.into_iter().filter(|other| *other != part && other.kind() == part.kind());
+        // A number in the rig file is the most certain one; the last check counts only for a part without it.
         if is_it(serial_of(&self.named, part)) {
             return None;
         }

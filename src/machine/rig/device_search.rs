@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use nima_core::kinematics::ArmModel;
 use nima_devices::{
     DeviceError, DeviceIdentity, bota,
     discovery::{DiscoveryDiagnosis, PluggedDevices, Probe, TIMEOUT, TestOutcome, diagnose, probe_named, probes},
@@ -177,8 +178,9 @@ fn pedals(devices: &RigSettings, plugged: &PluggedDevices) -> Vec<SearchResult> 
 
 /// Tries the address that the user named. The factory's address may belong to another device in the user's network.
 fn arms(part: RigPart, devices: &RigSettings, place: &str) -> Vec<SearchScope> {
-    let now =
-        part.side().and_then(|side| devices.arm(side)).and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
+    let set = part.side().and_then(|side| devices.arm(side));
+    let model = set.and_then(|set| set.model().ok()).unwrap_or(ArmModel::GEN3);
+    let now = set.and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
     let usual = kinova::KinovaSettings::default();
     let Some(at) = kinova::KinovaSettings::at(place) else { return Vec::new() };
     let mut changes = vec![("host", Value::from(at.host.as_str())), (SERIAL_NUMBER, "".into())];
@@ -193,7 +195,12 @@ fn arms(part: RigPart, devices: &RigSettings, place: &str) -> Vec<SearchScope> {
         serial_number: None,
         ..now
     };
-    vec![SearchScope { place: place.to_owned(), serial: None, changes, probe: probes::arm(part.name(), settings) }]
+    vec![SearchScope {
+        place: place.to_owned(),
+        serial: None,
+        changes,
+        probe: probes::arm(part.name(), settings, model),
+    }]
 }
 
 /// Returns a port that the system calls a modem is a sensor of the second generation; an adapter may carry either

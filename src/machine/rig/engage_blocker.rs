@@ -91,8 +91,10 @@ pub(super) struct ArmAndMarker {
 }
 
 /// A marker is at its expected pose within this distance (m, rad).
+/// Above the errors of a calibrated marker (millimetres, a degree), below the distance of two instruments.
 const NEAR: (f64, f64) = (0.020, 0.15);
 /// A marker beyond this distance (m, rad) is certainly not at its expected pose.
+/// Between [`NEAR`] and this the marker may simply have slipped, which is not a swap.
 const FAR: (f64, f64) = (0.050, 0.35);
 
 impl ArmAndMarker {

@@ -14,6 +14,7 @@ use super::DEVICES_MAX;
 /// Maximum number of values of a reading that are summed up: three for each of a tracker's tools.
 pub const CHANNELS: usize = 3 * TRACKED_TOOLS;
 /// Number of distinguished ages, in periods of the loop; the last one includes everything older.
+/// 48 ms at 1 kHz: beyond the age at which a reading counts as missing.
 pub const AGES: usize = 48;
 
 /// Count, mean, spread and range of one number.
@@ -33,6 +34,7 @@ impl GaugeSpread {
     /// Adds a value; a non-finite value is ignored.
     pub fn add(&mut self, value: f64) {
         if value.is_finite() {
+            // Combined like two groups, so that one value and a whole block use the same formula.
             self.join(&Self { count: 1, mean: value, squares: 0.0, low: value, high: value });
         }
     }

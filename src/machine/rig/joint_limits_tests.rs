@@ -5,9 +5,7 @@
 mod usual_arm;
 
 use nalgebra::Vector3;
-use nima_core::kinematics::{
-    Arm, ArmSettings, Inverse, JOINTS, JointLimits, Joints, Rcm, RcmSettings, limit_margin_rad,
-};
+use nima_core::kinematics::{Arm, ArmModel, ArmSettings, Inverse, JOINTS, JointLimits, Joints, Rcm, RcmSettings};
 use nima_devices::kinova::limits::Guard;
 
 use self::usual_arm::{READY_RAD, TROCAR_M, arm, middle_m, rcm};
@@ -65,7 +63,7 @@ struct Shown {
 fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     let arm = arm();
     let rcm = rcm(cone_deg);
-    let limits = JointLimits::of_arm(fraction, 0.05);
+    let limits = JointLimits::of_arm(&ArmModel::GEN3, fraction, 0.05);
     let begin = |joint_rad: &Joints| Inverse::new(arm, rcm, PERIOD_S, joint_rad).unwrap().within(limits);
     let mut hand = Hand::new(seed);
     let mut settled = Inverse::new(arm, rcm, PERIOD_S, &Joints::from(READY_RAD)).unwrap();
@@ -74,7 +72,7 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     }
     // With the wide cone, start near a joint limit; a slow arm would not reach one within the test.
     for _ in 0..5 * STEPS {
-        if cone_deg < 45.0 || limit_margin_rad(settled.joint_rad()) < 0.03 {
+        if cone_deg < 45.0 || ArmModel::GEN3.limit_margin_rad(settled.joint_rad()) < 0.03 {
             break;
         }
         settled.step(&hand.next());
@@ -102,12 +100,12 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
             let change = (way[joint] - moved[joint]).abs() / PERIOD_S.powi(2);
             shown.acceleration = shown.acceleration.max(change / limits.acceleration_rad_s2[joint]);
         }
-        shown.at_limits += usize::from(limit_margin_rad(&sent) < 0.04);
+        shown.at_limits += usize::from(ArmModel::GEN3.limit_margin_rad(&sent) < 0.04);
         shown.reversals += usize::from(way.iter().zip(&moved).any(|(now, before)| now * before < 0.0));
         if clutched == 0 {
             shown.behind_m.push(step.measures.tip_miss_m);
         }
-        assert!(limit_margin_rad(&sent) > 0.0, "beyond the range of a joint in tick {tick}");
+        assert!(ArmModel::GEN3.limit_margin_rad(&sent) > 0.0, "beyond the range of a joint in tick {tick}");
         last = sent;
         moved = way;
     }
@@ -147,7 +145,7 @@ fn the_trocar_and_every_limit_are_kept_at_any_share_of_the_arms_speed() {
 fn an_arm_that_is_held_is_not_commanded_further_away_and_comes_back_through_the_trocar() {
     let arm = arm();
     let rcm = rcm(20.0);
-    let limits = JointLimits::of_arm(0.3, 0.05);
+    let limits = JointLimits::of_arm(&ArmModel::GEN3, 0.3, 0.05);
     let mut inverse = Inverse::new(arm, rcm, PERIOD_S, &Joints::from(READY_RAD)).unwrap().within(limits);
     let middle_m = TROCAR_M - Vector3::z() * 0.12;
     for _ in 0..2000 {

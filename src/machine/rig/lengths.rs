@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use nima_core::{
-    kinematics::{Arm, ArmError, ArmSettings, Rcm, RcmError},
+    kinematics::{ArmError, ArmSettings, Rcm, RcmError},
     units,
 };
 
@@ -19,7 +19,7 @@ impl ArmSet {
     /// Checks that mount, trocar and hand-eye are plausible lengths in m; returns key, value and remedy otherwise.
     pub(super) fn check_lengths(&self) -> Result<(), (&'static str, String, String)> {
         let words = |vector: &Vector3<f64>| format!("{:?}", vector.as_slice());
-        Arm::new(&self.mount).map_err(|error| match error {
+        self.kinematics().map_err(|error| match error {
             ArmError::ShaftLength { shaft_m } => ("mount.shaft_m", shaft_m.to_string(), error.to_string()),
             ArmError::NotFinite { field } | ArmError::TooFar { field, .. } => {
                 let ArmSettings { base_m, base_deg, sensor_m, sensor_deg, .. } = &self.mount;
@@ -31,6 +31,7 @@ impl ArmSet {
                 };
                 (key, words(vector), error.to_string())
             }
+            ArmError::NoModel | ArmError::Model(_) => ("model", "given".to_owned(), error.to_string()),
         })?;
         let trocar_m = words(&self.rcm.trocar_m);
         Rcm::new(&self.rcm).map_err(|error| match error {

@@ -3,6 +3,7 @@
 //! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample returns `None`;
 //! it never repeats an old sample as a new one.
 
+mod arm_model;
 mod arm_pair;
 pub mod checkup;
 #[cfg(test)]
@@ -37,6 +38,7 @@ use nima_devices::{ClearFaults, ConnectionState, Health, Lever, SlotView};
 
 use crate::messages::{Command, PeerStatus};
 
+pub use arm_model::ArmModelSettings;
 pub use arm_pair::{ArmPair, DeliveringDevices, SideReadings};
 pub use device_identity::CheckedDevices;
 pub use device_search::{DeviceOffer, SearchResult, seek};

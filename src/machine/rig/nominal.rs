@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use nima_core::kinematics::LIMIT_RAD;
 use nima_devices::dynamixel;
 
 use super::{PartKind, RigPart, RigSettings, SensorSettings, gauge::CHANNELS};
@@ -41,8 +40,11 @@ impl Nominal {
             RigPart::Arm(_) => {
                 // The device is queried once per tick.
                 nominal.rate_hz = Some(loop_hz);
-                let turning = LIMIT_RAD.map(|limit| limit.is_finite().then_some([-limit, limit]));
-                nominal.ranges[..turning.len()].copy_from_slice(&turning);
+                if let Some(Ok(model)) = set.map(super::ArmSet::model) {
+                    for (joint, range) in nominal.ranges.iter_mut().enumerate().take(model.joints()) {
+                        *range = Some(model.range_rad(joint)).filter(|range| range.iter().all(|rad| rad.is_finite()));
+                    }
+                }
             }
             RigPart::Sensor(_) | RigPart::TissueSensor => {
                 let sensor = if part == RigPart::TissueSensor {

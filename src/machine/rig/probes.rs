@@ -17,7 +17,8 @@ pub fn rig_probes(settings: &RigSettings) -> Vec<Box<dyn Probe>> {
         let is_one_of_two = settings.arm(side.other()).is_some();
         let handle = if is_one_of_two { set.handle.for_hand_of(side) } else { set.handle.clone() };
         probes.push(handle.probe(&name("handle")));
-        probes.push(set.arm.probe(&name("arm")));
+        // A rig whose model is invalid is refused before its devices are probed.
+        probes.extend(set.model().ok().map(|model| set.arm.probe(&name("arm"), &model)));
         probes.push(set.sensor.probe(&name("sensor")));
         probes.extend(set.servos.clone().map(|chosen| servos(&name("servos"), chosen)));
     }

@@ -10,7 +10,9 @@ use nima_core::{
 use nima_devices::{DeviceError, TRACKED_TOOLS, dynamixel, hid, ndi};
 use serde::{Deserialize, Serialize};
 
-use super::{CheckedDevices, Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings, places};
+use super::{
+    ArmModelSettings, CheckedDevices, Flaws, FollowerSettings, JawsSettings, LeaderSettings, SensorSettings, places,
+};
 use crate::rig::{SIDES, Side};
 
 /// The devices of a rig. Each is optional; the parts of an arm pair are not.
@@ -85,6 +87,9 @@ pub struct ArmSet {
     pub sensor_at: SensorPlace,
     pub handle: LeaderSettings,
     pub arm: FollowerSettings,
+    /// The arm's joints, if it is not a Gen3 with seven joints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<ArmModelSettings>,
     /// Mounting of the arm, and dimensions of the instrument.
     pub mount: ArmSettings,
     /// Trocar point, where the instrument enters the body.
@@ -230,7 +235,7 @@ impl RigSettings {
             let of = |part: &'static str| move |trouble| below(&format!("{}.{part}", side.word()), trouble);
             set.handle.check().map_err(of("handle"))?;
             set.handle.check_emulated(self.emulated).map_err(of("handle"))?;
-            set.arm.check().map_err(of("arm"))?;
+            set.arm.check(&set.checked_model().map_err(of("model"))?).map_err(of("arm"))?;
             set.arm.check_emulated(self.emulated).map_err(of("arm"))?;
             set.sensor.check().map_err(of("sensor"))?;
             set.sensor.check_emulated(self.emulated).map_err(of("sensor"))?;
@@ -327,10 +332,13 @@ impl RigSettings {
 }
 
 /// Adds the part of the rig file as a prefix to the key of an error.
-fn below(part: &str, trouble: DeviceError) -> DeviceError {
+pub(super) fn below(part: &str, trouble: DeviceError) -> DeviceError {
     match trouble {
         DeviceError::Setting { key, value, allowed } => {
             DeviceError::Setting { key: format!("devices.{part}.{key}"), value, allowed }
+        }
+        DeviceError::File { key, path, reason } => {
+            DeviceError::File { key: format!("devices.{part}.{key}"), path, reason }
         }
         other => other,
     }

@@ -18,6 +18,7 @@ impl ErrorStats {
     /// Adds one error (N). A non-finite error is ignored here; the caller must count it.
     pub fn add(&mut self, error_n: &Vector3<f64>) {
         let norm_n = error_n.norm();
+        // One NaN would stay in every mean for the rest of the run.
         if !norm_n.is_finite() {
             return;
         }
@@ -33,6 +34,7 @@ impl ErrorStats {
 
     /// Returns the standard deviation of the error vector about its mean, N (for one axis: of the signed error).
     pub fn sd_n(&self) -> f64 {
+        // Population deviation: the errors of a run are all of them, not a sample.
         if self.count == 0 { 0.0 } else { (self.squares_n2 / self.count as f64).max(0.0).sqrt() }
     }
 }
@@ -50,6 +52,7 @@ impl Accuracy {
         for mode in computed.modes() {
             let force_n = rendered.force(mode);
             self.invalid[mode.index()] += u64::from(force_n.is_none());
+            // A mode without a force renders none, so its error is the whole force.
             self.by_mode[mode.index()].add(&(force_n.unwrap_or_else(Vector3::zeros) - truth_n));
         }
     }

@@ -16,6 +16,7 @@ const CAUGHT_UP_MAX: u64 = 8;
 
 /// Returns the deadlines since the last tick, s, the newest last.
 pub fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = f64> + use<> {
+    // The tick woke `wake_s` after its deadline.
     let first_s = timing.now_s - timing.wake_s;
     let newest = timing.missed_now;
     let oldest = if newest > CAUGHT_UP_MAX { newest } else { 0 };
@@ -32,6 +33,7 @@ impl<const N: usize> Between<N> {
     pub fn at(&self, t_s: f64, now: (f64, SVector<f64, N>)) -> SVector<f64, N> {
         let (now_s, value) = now;
         match self.last {
+            // Without two readings in order there is nothing to interpolate between.
             Some((last_s, last)) if t_s < now_s && last_s < now_s => {
                 let fraction = ((t_s - last_s) / (now_s - last_s)).clamp(0.0, 1.0);
                 last + (value - last) * fraction

@@ -38,6 +38,7 @@ impl FarLink {
         parcel: LinkPacket::BLANK,
         report: IdentificationReport::BLANK,
         behind: 0,
+        // Never renewed, so that parameters of an earlier run count as old.
         renewed_s: [f64::NEG_INFINITY; SLOTS],
         stop: None,
         source: ForceSource::NoSample,
@@ -54,6 +55,7 @@ impl FarLink {
         parcel.resting = identified.resting;
         parcel.modes = identified.modes;
         let packed = &identified.packed;
+        // Only a model that was accepted counts as renewed: damaged numbers change nothing.
         if packed.put_into(parcel)
             && let Some(renewed_s) = self.renewed_s.get_mut(usize::from(packed.slot))
         {
@@ -125,6 +127,7 @@ impl<L: Link> PairLink<L> {
         if !self.is_far {
             follower.identify(tip_m, timing, sends.then_some(&mut self.own));
         } else if self.far.is_usable {
+            // The force at the tip after the checks of this machine, not the received one.
             self.far.parcel.force_n = follower.force.tip_n;
         }
     }
@@ -153,12 +156,14 @@ impl<L: Link> PairLink<L> {
 
     /// Switches to the far link, whose delay was measured; returns the delay (s) if it has changed.
     pub(super) fn turn_far(&mut self, identified: &RemoteIdentification, settings: &ImpedanceSettings) -> Option<f64> {
+        // In ticks: a change below half a tick does not change the delay, and learning must not restart for it.
         let behind = settings.delay_ticks(identified.delay_s);
         if self.is_far && behind == self.far.behind {
             return None;
         }
         self.is_far = true;
         self.far.behind = behind;
+        // The delay of whole ticks, so that both ends render with the same number.
         self.delay_s = behind as f64 / self.rate_hz;
         Some(self.delay_s)
     }
@@ -169,6 +174,7 @@ impl<L: Link> PairLink<L> {
         if let Some(identified) = identified {
             far.take(identified);
         }
+        // A report that is missing in this tick leaves the last one, whose age is judged elsewhere.
         far.is_usable = far.source.is_usable();
         ForceReport::of_far_end(far.source, far.parcel.force_n)
     }

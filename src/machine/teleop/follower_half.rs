@@ -13,6 +13,7 @@ use super::{
 use crate::messages::{ForceReport, ForceSource};
 
 /// Marks a sample that was not measured.
+/// The identifier counts such a sample as rejected: it keeps its clock without learning.
 const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
 /// The force before the first sample, and when the last one is too old.
@@ -43,6 +44,7 @@ impl FollowerHalf {
     /// Identifies at every deadline that has passed, and sends a packet for each; without a `link` none is sent.
     pub(super) fn identify<L: Link>(&mut self, tip_m: &Vector3<f64>, timing: &Timing, mut link: Option<&mut L>) {
         let now = (timing.now_s, stacked([tip_m, &self.force.tip_n]));
+        // Several deadlines after a late tick: the identification needs evenly spaced samples.
         for t_s in deadlines(timing, self.period_s) {
             let at = self.measured.at(t_s, now);
             let [position_m, force_n] = [0, 3].map(|from| at.fixed_rows::<3>(from).into_owned());
@@ -63,6 +65,7 @@ impl FollowerHalf {
         for t_s in deadlines(timing, self.period_s) {
             self.identifier.step(&Sample { t_s, position_m: NOWHERE, force_n: NOWHERE });
         }
+        // A value from before the gap must not be interpolated into the next tick.
         self.measured.forget();
     }
 }

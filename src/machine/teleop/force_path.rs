@@ -86,6 +86,7 @@ impl ForcePath {
     pub const fn knows(&self, sensed: &SensedForce) -> bool {
         match sensed {
             SensedForce::AtTip(_) => true,
+            // After a change of the sensor no calibration is known to belong to it.
             SensedForce::AtWrist(_) => self.gravity.is_some() && !self.suspended,
             SensedForce::FarEnd(identified) => identified.source.is_usable(),
         }
@@ -96,6 +97,7 @@ impl ForcePath {
         let report = self.report(t_s, sensed);
         // An impossible force from a plausible sample means that the calibration is wrong, so do not fall back to the
         // last good force.
+        // NaN fails the comparison too, so it counts as impossible.
         let possible = report.tip_n.iter().all(|f| f.abs() <= PLAUSIBLE_N);
         if possible || !report.source.is_usable() { report } else { ForceReport::none(ForceSource::Poisoned, None) }
     }
@@ -110,19 +112,23 @@ impl ForcePath {
     }
 
     fn at_wrist(&mut self, t_s: f64, sample: &WristSample) -> ForceReport {
+        // Before the calibration is looked up: the sensor itself is unknown.
         if self.suspended {
             return ForceReport::none(ForceSource::Unidentified, None);
         }
         let Some(gravity) = &mut self.gravity else {
             return ForceReport::none(ForceSource::Uncalibrated, None);
         };
+        // The low-pass of the compensation runs on time, so missed ticks have to count.
         let dt_s = self.last_s.replace(t_s).map_or(self.period_s, |last_s| (t_s - last_s).max(0.0));
         let gravity_free = gravity.step_after(dt_s, sample);
+        // Without the orientation neither weight nor the direction of the force is known.
         let (Some(wrench), Some(world_from_s1)) = (gravity_free, sample.world_from_s1) else {
             return ForceReport::none(ForceSource::NoOrientation, gravity_free);
         };
         let Some(tip_force) = &mut self.tip_force else {
             return ForceReport {
+                // Without a network the force at the wrist is used, which includes the friction of the trocar.
                 tip_n: world_from_s1 * wrench.force_n,
                 ..ForceReport::none(ForceSource::Wrist, gravity_free)
             };

@@ -19,8 +19,10 @@ use crate::{
 };
 
 /// Distance from the gripper's hinge to the finger, m (omega.7).
+/// Converts the opening angle into a travel, whose product with the force is the energy.
 const GRIPPER_ARM_M: f64 = 0.048;
 /// Duration of the force ramp after each engagement, s: a force must not begin as a step in the hand. Design choice.
+/// Shorter ramps are felt as a knock, longer ones hide the first contact.
 const RAMP_S: f64 = 0.2;
 
 #[derive(Clone, Debug)]
@@ -58,6 +60,7 @@ impl LeaderHalf {
         Ok(Self {
             teleoperation: rig.teleoperation,
             hand_eye: HandEyeCoupling::new(rig.teleoperation.mapping(), at_rest),
+            // Per tick, so that no change of the mapping or jump of the hand can exceed the arm's speed.
             step_max_m: rig.follower_speed_max_m_s / rig.rate_hz,
             command_m: None,
             modes: Modes {
@@ -83,6 +86,7 @@ impl LeaderHalf {
         if !self.hand_eye.is_engaged() {
             return TipLead { target, tip_m: None };
         }
+        // Without an earlier command the path starts at the tip, which cannot jump.
         let from_m = self.command_m.unwrap_or(seen.tip_m);
         let path_m = target.tip_m - from_m;
         let length_m = path_m.norm();
@@ -95,6 +99,7 @@ impl LeaderHalf {
     /// Returns the command that was active when the tip was measured, m; `None` without a current measurement.
     pub(super) fn command_behind_m(&self, behind: usize, silent_s: f64) -> Option<Vector3<f64>> {
         // One missing message is normal jitter; beyond that the command and the tip no longer belong together.
+        // 1.5: half a tick of rounding beyond one missing message.
         if silent_s * self.rate_hz > 1.5 {
             return None;
         }
@@ -170,6 +175,7 @@ pub(super) struct Modes {
     pub(super) mode: Mode,
     /// The mode that is rendered until the new one has a force.
     before: Option<Mode>,
+    // The mode before is computed until the new one has a force, so that the hand is never without one.
     pub(super) compares: bool,
 }
 
@@ -183,6 +189,7 @@ impl Modes {
         let last = std::mem::replace(&mut self.mode, mode);
         // Selecting the current mode again must not restart it.
         if last != mode {
+            // Only the mode that is left can bridge the time until the new one has learnt.
             self.before = Some(last);
         }
     }
@@ -190,6 +197,7 @@ impl Modes {
     /// Returns the force of the selected mode; until it has one, the force of the previous mode, so that a change of
     /// mode does not interrupt the force.
     pub(super) fn force_n(&self, rendered: &RenderedForces) -> Option<Vector3<f64>> {
+        // Falls back to the former mode while the new one has nothing valid yet.
         rendered.force(self.mode).or_else(|| self.before.and_then(|before| rendered.force(before)))
     }
 

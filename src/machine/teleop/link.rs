@@ -33,11 +33,13 @@ pub struct ProgrammedLink {
 impl ProgrammedLink {
     /// Creates an empty link for a loop of this rate (Hz), with room for [`MAX_DELAY_S`].
     pub fn new(rate_hz: f64, delay_s: f64) -> Self {
+        // Two more than the longest delay: one for the newest packet and one for rounding.
         let room = (MAX_DELAY_S * rate_hz).ceil() as usize + 2;
         Self { ring: vec![LinkPacket::BLANK; room], sent: 0, delivered: 0, delay_s, half_period_s: 0.5 / rate_hz }
     }
 
     fn oldest_kept(&self) -> usize {
+        // Older packets have been overwritten.
         self.sent.saturating_sub(self.ring.len())
     }
 
@@ -50,6 +52,7 @@ impl Link for ProgrammedLink {
     /// If the delay increases, packets that were already delivered are delivered again.
     fn set_delay(&mut self, delay_s: f64) {
         self.delay_s = delay_s;
+        // Searched again from the oldest packet, because with another delay another packet is the newest due one.
         self.delivered = self.oldest_kept();
     }
 
@@ -62,10 +65,12 @@ impl Link for ProgrammedLink {
         let slot = self.slot(self.sent);
         self.ring[slot] = *parcel;
         self.sent += 1;
+        // Overwritten packets can no longer be delivered.
         self.delivered = self.delivered.max(self.oldest_kept());
     }
 
     fn receive(&mut self, now_s: f64) -> Option<&LinkPacket> {
+        // Half a period of tolerance: times are sums of rounded periods, and a packet must arrive in its own tick.
         let due_s = now_s - self.delay_s + self.half_period_s;
         // Steps at most through the whole ring; one step per tick except after a change of the delay.
         while self.delivered < self.sent && self.ring[self.slot(self.delivered)].t_s <= due_s {

@@ -116,6 +116,7 @@ impl<L: Link> Loop<L> {
     /// Carries out one command in every pair that it concerns, and reports which pair refused it and why.
     pub fn obey(&mut self, command: Command, t_s: f64) {
         let busy = self.pairs().find(|pair| pair.state() != LoopState::Idle).map(|pair| (pair.side(), pair.state()));
+        // A test of a watchdog stops an arm on purpose, so no arm may be in use.
         if let (Command::TestWatchdog(_), Some((side, state))) = (command, busy) {
             return self.refuse(side, command, Refusal::State(state), t_s);
         }
@@ -123,6 +124,7 @@ impl<L: Link> Loop<L> {
         for pair in self.pairs.iter_mut().flatten().filter(|pair| command.concerns(pair.side())) {
             answers[pair.side().index()] = Some(pair.obey(command, t_s));
         }
+        // A command that one arm carried out is not a failure because the other one is already in that state.
         let done = answers.contains(&Some(Ok(())));
         for (side, answer) in Side::ALL.into_iter().zip(answers) {
             match answer {
@@ -134,6 +136,7 @@ impl<L: Link> Loop<L> {
     }
 
     fn refuse(&mut self, side: Side, command: Command, why: Refusal, t_s: f64) {
+        // A full list loses the refusal, not the tick: nothing is allocated here.
         if let Some(free) = self.refused.iter_mut().find(|slot| slot.is_none()) {
             *free = Some(Event::CommandRefused { t_s, side, command, why });
         }
@@ -180,6 +183,7 @@ impl<L: Link> Loop<L> {
     /// off.
     pub fn notice_stall(&mut self, silent_s: f64, t_s: f64) {
         for pair in self.pairs.iter_mut().flatten() {
+            // In whole periods, as the loop itself counts missed ones.
             let periods = (silent_s * pair.rate_hz()).round() as u64;
             pair.fail_if_driven(Fault::LoopStalled { periods }, t_s);
         }
@@ -206,6 +210,7 @@ impl<L: Link> Loop<L> {
         inputs: [Option<Inputs>; SIDES],
         timing: &Timing,
     ) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
+        // Taken before any pair steps, so that both sides see the same state in the same tick, whatever their order.
         let have_failed = self.pairs.each_ref().map(|pair| pair.as_ref().is_some_and(|pair| pair.has_failed()));
         let mut outputs = [Outputs::SAFE; SIDES];
         let mut ticks = [None; SIDES];

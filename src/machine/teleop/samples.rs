@@ -7,6 +7,7 @@ use crate::rig::Inputs;
 pub(super) const SILENT_AFTER_S: f64 = 0.020;
 /// Number of missing samples that counts as a fault; each arriving sample compensates for [`FORGIVEN`] missing ones.
 const TOO_MANY: f64 = 8.0;
+// A missing sample per five arriving ones never adds up to a fault.
 const FORGIVEN: f64 = 0.2;
 
 #[derive(Clone, Debug)]
@@ -32,6 +33,7 @@ impl Samples {
 
     pub(super) fn keep(&mut self, inputs: &Inputs, now_s: f64) {
         self.last = Some(*inputs);
+        // The time of the measurement, not of its arrival in the loop.
         self.last_s = now_s - inputs.age_s;
     }
 

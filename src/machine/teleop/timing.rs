@@ -58,7 +58,9 @@ impl Ticks {
         if timing.now_s.is_nan() || timing.now_s <= last_s {
             return TickSpacing::Backwards;
         }
+        // One period is expected, and each missed one was announced.
         let surplus = (timing.now_s - last_s) / self.period_s - (1 + timing.missed_now) as f64;
+        // Leaky sums in both directions: jitter cancels out, a drift adds up.
         self.late = (self.late + surplus - MOVES_PHASE).max(0.0);
         self.early = (self.early - surplus - MOVES_PHASE).max(0.0);
         let drifts = self.late.max(self.early) > DRIFT_MAX;

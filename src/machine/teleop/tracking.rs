@@ -39,14 +39,17 @@ pub struct TrackingLag {
 impl TrackingLag {
     /// Starts without a known lag, for a loop of this rate (Hz).
     pub fn new(rate_hz: f64) -> Self {
+        // At low rates one tick is longer than the steps, so it is the step.
         let stride = ((LAG_MAX_S * rate_hz / CANDIDATES as f64).round() as usize).max(1);
         let far = (MAX_DELAY_S * rate_hz).ceil() as usize;
         Self {
+            // Room for the longest lag beyond the longest delay of a remote follower.
             ring: vec![Vector3::zeros(); stride * CANDIDATES + 1 + far],
             newest: 0,
             filled: 0,
             stride,
             forget: (1.0 / (MEMORY_S * rate_hz)).min(1.0),
+            // Compared per tick, so that `span` ticks need `span` times as much.
             step_min_m: MOVING_M_S / rate_hz,
             cost_m2: [0.0; CANDIDATES],
             moving_ticks: 0,
@@ -67,6 +70,7 @@ impl TrackingLag {
 
     fn back(&self, samples: usize) -> &Vector3<f64> {
         let room = self.ring.len();
+        // Not farther than the oldest stored command.
         &self.ring[(self.newest + room - samples.min(self.filled.saturating_sub(1))) % room]
     }
 
@@ -85,6 +89,7 @@ impl TrackingLag {
         // Over several ticks, because the noise of one tick is faster than a slow hand.
         let span = self.stride * 4;
         let moving = (command_m - self.back(span)).norm() > self.step_min_m * span as f64;
+        // Every candidate needs a command from its time.
         if moving && self.filled > behind + self.stride * CANDIDATES {
             self.compare(tip_m, behind);
         }
@@ -108,6 +113,7 @@ impl TrackingLag {
             }
         }
         if self.moving_ticks >= self.warm_up_ticks {
+            // The parabola through the three lowest costs finds the lag between two candidates.
             self.lag_samples = (best as f64 + self.vertex(best)) * self.stride as f64;
         }
     }
@@ -121,6 +127,7 @@ impl TrackingLag {
         let [before, lowest, after] = [self.cost_m2[best - 1], self.cost_m2[best], self.cost_m2[best + 1]];
         let curvature = before - 2.0 * lowest + after;
         // Equal costs have no minimum: a flat parabola would give an infinite vertex.
+        // Half a step at most: the minimum is within the neighbours of the best candidate.
         if curvature <= 0.0 { 0.0 } else { (0.5 * (before - after) / curvature).clamp(-0.5, 0.5) }
     }
 }

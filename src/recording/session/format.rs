@@ -12,6 +12,7 @@ pub(super) const END: usize = HEAD + 8 + 8 + 4 + MAGIC.len();
 /// The record that ends the data.
 pub(super) const DATA_END: usize = HEAD + 4;
 
+// Kinds of records, numbered by the MCAP specification.
 pub(super) mod kind {
     pub(in crate::session) const HEADER: u8 = 0x01;
     pub(in crate::session) const FOOTER: u8 = 0x02;

@@ -52,10 +52,12 @@ impl WordSink for BlockColumns {
     }
 }
 
+// Kinds of columns in a file: never renumber one.
 const EMPTY: u8 = 0;
 const CONSTANT: u8 = 1;
 const AS: u8 = 2;
-/// Three kinds of differences.
+/// Three kinds of differences: XOR suits values with the same exponent, steps suit counters, and steps of steps suit
+/// times.
 const XOR: u8 = 3;
 const STEP: u8 = 4;
 const STEP_OF_STEP: u8 = 5;
@@ -133,6 +135,7 @@ impl UnpackedColumns {
     /// Parses the bytes of [`BlockColumns::pack`], of at most this many columns.
     pub(crate) fn of(from: &mut &[u8], max: usize) -> Result<Self, CodecError> {
         let count = take_number(from)?;
+        // Checked before memory is allocated, because the count may be damaged.
         if count > max as u64 {
             return Err(CodecError::Long);
         }
@@ -228,6 +231,7 @@ pub(crate) fn number(to: &mut Vec<u8>, mut number: u64) {
 /// Reads a number written by [`number`].
 pub(crate) fn take_number(from: &mut &[u8]) -> Result<u64, CodecError> {
     let mut number = 0_u64;
+    // Ten bytes of seven bits contain all 64 bits.
     for shift in (0..64).step_by(7) {
         let byte = *bytes(from, 1)?.first().ok_or(CodecError::Short)?;
         number |= u64::from(byte & 0x7f) << shift;

@@ -297,8 +297,7 @@ macro_rules! record {
     };
 }
 
-/// An enum: the number of the variant, then the columns of every variant, of which only those of the current one are
-/// used.
+/// An enum: the number of the variant, then the columns of every variant. Only those of the current variant are used.
 macro_rules! choice {
     (put $type:ty { $($tag:literal => $variant:ident { $($field:tt: $name:ident: $kind:ty),* }),* $(,)? }) => {
         impl ToWords for $type {

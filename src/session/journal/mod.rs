@@ -70,6 +70,7 @@ pub enum JournalMessage {
     End(JournalEnd),
 }
 
+// Kinds of messages in a file: never renumber one.
 const START: u8 = 0;
 const CALIBRATIONS: u8 = 1;
 const BLOCK: u8 = 2;

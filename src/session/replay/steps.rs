@@ -113,6 +113,7 @@ pub fn decoded(
     let mut next = read;
     bytes.filter_map(move |bytes| {
         let decoded = bytes.and_then(|bytes| match number(&bytes) {
+            // The state of the loop at the start already contains these messages.
             Ok(number) if number < next => Ok(None),
             _ => decode(&bytes).map(Some).map_err(|source| ReplayError::Message { place: next + 1, source }),
         });
@@ -167,6 +168,7 @@ impl OpenBlock {
     fn next(&mut self) -> Option<ReplayStep> {
         let passed = self.passed;
         let last = self.passed == self.rows.len();
+        // Notes after the last tick belong to the end of the block.
         if let Some((_, noted)) = self.noted.next_if(|(before, _)| last || *before <= passed) {
             return Some(step_of(noted));
         }
@@ -182,6 +184,7 @@ impl OpenBlock {
         let first = self.passed.saturating_sub(1);
         let last = self.rows.len();
         let end = self.noted.peek().map_or(last, |(before, _)| (*before).clamp(self.passed, last));
+        // The usual case, without a copy.
         if (first, end) == (0, last) {
             self.passed = 0;
             return take(&mut self.rows);

@@ -70,6 +70,7 @@ impl Difference {
     /// Adds a vector. A vector that is not finite is left out: the force was unknown.
     fn add(&mut self, difference_n: &Vector3<f64>) {
         let length_n = difference_n.norm();
+        // An unknown force has no difference.
         if !length_n.is_finite() {
             return;
         }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+// Design choice: more than a page shows would only enlarge the report.
 pub const BUCKETS: usize = 600;
 
 /// The minimum and the maximum of each bucket; `None` where there is no value.

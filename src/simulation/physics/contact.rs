@@ -54,6 +54,7 @@ impl Law {
     /// Returns the forces at the end of a step of `step_s`.
     pub(crate) fn push(&self, memory: &mut ContactMemory, touch: &ContactTouch, step_s: f64) -> ContactPush {
         let approach_m_s = touch.normal.dot(&touch.velocity_m_s);
+        // The damper alone would pull while the bodies separate.
         let normal_n = (self.stiffness_n_m * touch.depth_m - self.damping_n_s_m * approach_m_s).clamp(0.0, FORCE_MAX_N);
         let tangent = |vector: &Vector3<f64>| vector - touch.normal * touch.normal.dot(vector);
         let slide_m_s = tangent(&touch.velocity_m_s);
@@ -64,6 +65,7 @@ impl Law {
         let size_n = asked_n.norm();
         let friction_n = if size_n > limit_n {
             let sliding_n = asked_n * (limit_n / size_n);
+            // The spring is shortened to the limit, so that friction reverses as soon as the motion does.
             memory.stretched_m = -sliding_n / stiffness_n_m;
             sliding_n
         } else {
@@ -112,6 +114,7 @@ impl ContactPair {
             };
             let nearer = usize::from(distance_m(&left[1]) < distance_m(&left[0]));
             if distance_m(&left[nearer]) < MOVED_M {
+                // Taken, so that no two contacts share a state.
                 left[nearer].take().map_or_else(ContactMemory::default, |(_, memory)| memory)
             } else {
                 ContactMemory::default()

@@ -89,6 +89,7 @@ impl Ring {
     /// Advances by `step_s` under gravity and the forces of this step, and clears the forces (semi-implicit Euler).
     pub(crate) fn advance(&mut self, step_s: f64, directions: &[[f64; 2]; PLACES]) {
         let weight_n = Vector3::z() * (-GRAVITY_M_S2 * self.mass_kg);
+        // The position uses the new velocity, so that the energy of a contact's spring stays bounded.
         self.velocity_m_s += (self.force_n + weight_n) * (step_s / self.mass_kg);
         self.momentum += self.torque_nm * step_s;
         self.clear_forces();
@@ -96,15 +97,18 @@ impl Ring {
         self.momentum = at_most(self.momentum, TURNING_MAX_RAD_S * self.across_kg_m2);
         self.turn();
         self.centre_m += self.velocity_m_s * step_s;
+        // The rate of a quaternion is half the angular velocity times the quaternion.
         let half = self.turning_rad_s * (0.5 * step_s);
         let turned = Quaternion::new(0.0, half.x, half.y, half.z) * self.world_from_ring.quaternion();
         self.world_from_ring = UnitQuaternion::new_normalize(self.world_from_ring.into_inner() + turned);
+        // One NaN would spread to everything that the ring touches.
         let sane = self.centre_m.iter().chain(self.world_from_ring.coords.iter()).all(|x| x.is_finite());
         if !sane {
             self.lose();
             return;
         }
         self.place(directions);
+        // The axis has turned, and the same momentum means another velocity about it.
         self.turn();
     }
 

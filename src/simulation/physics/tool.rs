@@ -89,6 +89,7 @@ impl PhysicsTool {
         let turn = self.to.world_from_jaws * self.from.world_from_jaws.inverse();
         // `w` is the cosine of half the angle; a small angle is twice the vector part.
         let half = turn.vector() * if turn.w < 0.0 { -1.0 } else { 1.0 };
+        // `1 - JUMP_RAD^2 / 8` is the cosine of half that angle.
         if far || turn.w.abs() < 1.0 - 0.125 * JUMP_RAD * JUMP_RAD {
             self.from = *at;
             self.turning_rad_s = Vector3::zeros();
@@ -107,7 +108,9 @@ impl PhysicsTool {
     pub(crate) fn place(&mut self, fraction: f64) {
         let from = self.from.world_from_jaws.into_inner();
         let to = self.to.world_from_jaws.into_inner();
+        // `q` and `-q` are the same rotation; this is the shorter way.
         let to = if from.dot(&to) < 0.0 { -to } else { to };
+        // For the small rotation of one step this is close to a rotation at constant speed.
         let world_from_jaws = UnitQuaternion::new_normalize(from * (1.0 - fraction) + to * fraction);
         let between = |from: &Vector3<f64>, to: &Vector3<f64>| from * (1.0 - fraction) + to * fraction;
         self.tip_m = between(&self.from.tip_m, &self.to.tip_m);
@@ -142,6 +145,7 @@ impl PhysicsTool {
         if part == SHAFT {
             // The trocar does not move.
             let shaft = self.parts[SHAFT];
+            // Finite even with the hinge in the trocar.
             let length_m = (shaft.to_m - shaft.from_m).norm().max(1e-6);
             return self.hinge_m_s * ((point_m - shaft.from_m).norm() / length_m).min(1.0);
         }
@@ -164,7 +168,7 @@ impl PhysicsTool {
         }
     }
 
-    /// Advances the jaws by `step_s`: a spring towards the command, limited in force, and the opening forces, against a
+    /// Advances the jaws by `step_s`: a spring of limited force towards the command, and the opening forces, against a
     /// damper.
     pub(crate) fn drive(&mut self, step_s: f64) {
         let JawSettings { finger_length_m, stiffness_n_m, force_max_n, .. } = self.jaws;
@@ -174,6 +178,7 @@ impl PhysicsTool {
         let before_rad = self.opening_rad;
         let rate_rad_s = (self.now_opening_n - closing_n) / (self.damping_n_s_m * finger_length_m);
         self.opening_rad = (before_rad + rate_rad_s * step_s).clamp(0.0, OPENING_MAX_RAD);
+        // From the clamped angle, so that jaws at their stop have no speed.
         self.opening_rad_s = (self.opening_rad - before_rad) / step_s;
         self.opening_n += self.now_opening_n;
         self.now_opening_n = 0.0;

@@ -18,6 +18,7 @@ pub(super) fn force_n(layers: &[GroundLayer], depth_m: f64) -> f64 {
     if !(high_n > 0.0 && high_n.is_finite()) {
         return 0.0;
     }
+    // Exact for equal linear layers.
     let mut force_n = high_n / layers.len() as f64;
     for _ in 0..STEPS_MAX {
         let mut given_m = 0.0;
@@ -33,6 +34,7 @@ pub(super) fn force_n(layers: &[GroundLayer], depth_m: f64) -> f64 {
             low_n = force_n;
         }
         let step_n = (depth_m - given_m) / slope_m_n;
+        // Well above the rounding of a double (2e-16), so that the loop ends.
         if step_n.abs() <= 1e-12 * force_n {
             break;
         }

@@ -33,6 +33,7 @@ impl TissueMembrane {
         if force_n < tears_at_n {
             return force_n;
         }
+        // The force ends in one step, as at the moment when a needle breaks through.
         self.holes_m[self.torn % HOLES] = Some([tip_m.x, tip_m.y]);
         self.torn += 1;
         0.0

@@ -89,6 +89,7 @@ impl Tissue {
         };
         if depth_m <= 0.0 || beside {
             self.anchor_m = None;
+            // Tissue that is not touched recovers.
             if let Some(relaxing) = &mut self.relaxing {
                 relaxing.step(0.0);
             }
@@ -96,12 +97,14 @@ impl Tissue {
         }
         let elastic_n = self.elastic_n(depth_m, tip_m);
         let held_n = self.relaxing.as_mut().map_or(elastic_n, |relaxing| relaxing.step(elastic_n));
+        // Upward is positive, so the force grows while the tip moves in.
         let normal_n = (held_n * (1.0 - damping_s_m * velocity_m_s.z)).max(0.0);
         let here = Vector3::new(tip_m.x, tip_m.y, 0.0);
         let stretch_m = here - self.anchor_m.unwrap_or(here);
         let slip_m = if shear_stiffness_n_m > 0.0 { friction * normal_n / shear_stiffness_n_m } else { 0.0 };
         let length_m = stretch_m.norm();
         let held_m = if length_m > slip_m { stretch_m * (slip_m / length_m) } else { stretch_m };
+        // Beyond the Coulomb limit the surface point follows the tip.
         self.anchor_m = Some(here - held_m);
         Vector3::new(0.0, 0.0, normal_n) - held_m * shear_stiffness_n_m + membrane_n
     }

@@ -44,6 +44,7 @@ impl RelaxationState {
     pub(super) fn step(&mut self, elastic_n: f64) -> f64 {
         let before_n = std::mem::replace(&mut self.elastic_n, elastic_n);
         self.relaxed_n = before_n + (self.relaxed_n - before_n) * self.decay + (elastic_n - before_n) * self.ramp;
+        // Tissue does not pull at a tip that leaves it.
         (elastic_n - self.config.fraction * self.relaxed_n).max(0.0)
     }
 }

@@ -24,6 +24,7 @@ impl World {
 
     /// Returns the force on the tip by the tissue or a person, N; call it once per step.
     fn contact_n(&mut self) -> Vector3<f64> {
+        // The tissue advances once per measurement, whatever the number of steps of the world.
         let passed_s = self.time_s - std::mem::replace(&mut self.measured_s, self.time_s);
         let tissue_n = match &mut self.tissue {
             Some(tissue) if !self.aside => {
@@ -91,6 +92,7 @@ impl World {
         let wrench = sensed.wrist().map(|sample| sample.raw);
         let hand_m = self.hand.position_m();
         let leader_m = self.leader.map_or(hand_m, |LeaderModel { resolution_m, .. }| {
+            // The encoders of a device count in steps.
             hand_m.map(|x| (x / resolution_m).round() * resolution_m)
         });
         Inputs {

@@ -241,6 +241,7 @@ impl World {
         };
         self.command_m = match outputs.tip_command_m {
             Some(command) if command.iter().all(|x| x.is_finite()) => command,
+            // Without a command the follower stays where it is.
             _ => self.tip_m,
         };
         self.hand.guide(outputs.guide_m);

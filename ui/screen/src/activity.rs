@@ -40,6 +40,7 @@ impl UsualNumber {
         self.blocks += 1;
         if self.blocks <= LEARNING {
             self.mean = mean;
+            // The device may move while it is learned, so the quietest block counts.
             self.noise = if self.blocks == 1 { noise } else { self.noise.min(noise) };
             return 0.0;
         }

@@ -107,6 +107,7 @@ impl HistoryLevel {
     fn push(&mut self, t_s: f64, values: &[f32; CHANNELS]) {
         let number = self.number(t_s);
         let end = self.first + self.buckets.len() as u64;
+        // After such a pause no stored bucket would remain.
         if self.buckets.is_empty() || number >= end + CAPACITY as u64 {
             self.buckets.clear();
             self.first = number;
@@ -226,6 +227,7 @@ impl SignalHistory {
     /// Returns the lowest and highest value of the channels between two times.
     pub fn extent(&self, channels: &[usize], (from_s, to_s): (f64, f64)) -> Option<(f64, f64)> {
         let mut extent: Option<(f32, f32)> = None;
+        // Coarse buckets have the same lowest and highest values.
         for (_, bucket) in self.level(from_s, to_s, 1000).between(from_s, to_s) {
             for (low, high) in channels.iter().filter_map(|&channel| bucket.ends(channel)) {
                 extent = Some(extent.map_or((low, high), |(l, h)| (l.min(low), h.max(high))));

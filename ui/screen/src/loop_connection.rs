@@ -153,6 +153,7 @@ impl LoopConnection {
         self.dismiss();
         let unused = Arc::clone(&self.shared);
         drop(self);
+        // The handle has one owner again once the thread has ended.
         Arc::into_inner(unused)?.handle.stop_and_join()
     }
 
@@ -179,6 +180,7 @@ impl DoorShared {
     fn look_after(&self, wake: &dyn Fn()) {
         while !self.end.load(Ordering::Relaxed) {
             if !self.calm.load(Ordering::Relaxed) {
+                // `rest` and `dismiss` wake the thread.
                 thread::park();
                 continue;
             }
@@ -186,6 +188,7 @@ impl DoorShared {
             let mut kept = self.lock();
             let seen = self.bring_in(&mut kept);
             if seen && !std::mem::replace(&mut kept.woken, true) {
+                // Released first, because the window locks it at once.
                 drop(kept);
                 wake();
             }

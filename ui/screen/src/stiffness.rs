@@ -37,6 +37,7 @@ impl ContactStiffness {
         }
         let dt_s = self.last_s.map_or(f64::INFINITY, |last_s| t_s - last_s);
         if !(0.0..PAUSE_S).contains(&dt_s) {
+            // The last stiffness stays on the screen until the new contact has one.
             *self = Self { n_m: self.n_m, last_s: Some(t_s), ..Self::default() };
             return;
         }
@@ -64,6 +65,7 @@ impl ContactStiffness {
         }
         // Negative, because the force of the tissue opposes the displacement.
         let n_m = -(along.transpose() * self.force_way * along)[0] / travel_m2;
+        // Values outside are noise, not a contact.
         if (1.0..1e6).contains(&n_m) {
             self.n_m = Some(n_m);
         }

@@ -255,7 +255,7 @@ fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
     wanted.or(entry_ui(ui, Action::ResetLayout, 300.0))
 }
 
-/// Draws the switches of a panel: whether it is open, and whether it is in a window of its own.
+/// Draws the switches of a panel: whether it is open, and whether it is in a separate window.
 fn panel_ui(ui: &mut Ui, layout: &PanelLayout, panel: PanelId) -> Option<Action> {
     ui.spacing_mut().item_spacing.x = 3.0;
     let open = layout.is_open(panel);

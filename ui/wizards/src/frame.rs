@@ -161,6 +161,7 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         if save_card(ui, of_sensor, proof.as_deref(), wizard.frame_mut()) {
             saving = wizard.made(binding);
         }
+        // Without a proof, the file names the person who accepts the result.
         if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(SaveRequest::judgement_mut)) {
             wizard.frame_mut().override_in(judgement);
         }

@@ -51,6 +51,8 @@ impl SensorDiagnosis {
         let wrist = joint_fit(rows, c_from_s2, |row, _| row.s1_from_c.inverse())?;
         let tissue = joint_fit(rows, c_from_s2, |_, c_from_s2| UnitQuaternion::from(*c_from_s2));
         let (fit, offset_frame) = match tissue {
+            // Clearly better (a tenth) means that the offset is constant in that sensor's axes; otherwise the data
+            // cannot decide.
             Some(tissue) if tissue.sd_n < 0.9 * wrist.sd_n => (tissue, OffsetFrame::S2),
             Some(tissue) if wrist.sd_n < 0.9 * tissue.sd_n => (wrist, OffsetFrame::S1),
             _ => (wrist, OffsetFrame::Unknown),
@@ -83,12 +85,14 @@ fn joint_fit(
     start: &Rotation3<f64>,
     c_from_offset: impl Fn(&PushRow, &Rotation3<f64>) -> UnitQuaternion<f64>,
 ) -> Option<JointFit> {
+    // Three equations per row; without a surplus there is no residual and no standard error.
     let freedom = (3 * rows.len()).checked_sub(UNKNOWNS).filter(|&freedom| freedom > 0)?;
     let mut rotation = *start;
     let mut gain = 1.0;
     let mut offset_n = Vector3::zeros();
     let mut covariance = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
     let mut sd_n = 0.0;
+    // Six Gauss-Newton steps: the start is already the rotation of least squares, so the steps shrink quadratically.
     for _ in 0..6 {
         let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
         let mut right = SVector::<f64, UNKNOWNS>::zeros();
@@ -98,6 +102,7 @@ fn joint_fit(
             let transform = *c_from_offset(row, &rotation).to_rotation_matrix().matrix();
             let error_n = row.c_n - turned_n * gain - transform * offset_n;
             let mut slopes = SMatrix::<f64, 3, UNKNOWNS>::zeros();
+            // Derivative of a rotated vector by a small rotation in front of it: `-[R v]x`.
             slopes.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-turned_n * gain).cross_matrix());
             slopes.fixed_view_mut::<3, 1>(0, 3).copy_from(&turned_n);
             slopes.fixed_view_mut::<3, 3>(0, 4).copy_from(&transform);
@@ -108,11 +113,13 @@ fn joint_fit(
         covariance = normal.cholesky()?.inverse();
         sd_n = (squares / freedom as f64).sqrt();
         let step = covariance * right;
+        // Multiplied in front, as the derivative assumes; the exponential keeps it a rotation.
         rotation = Rotation3::new(step.fixed_rows::<3>(0).into_owned()) * rotation;
         gain += step[3];
         offset_n += step.fixed_rows::<3>(4);
     }
     let se = |index: usize| sd_n * covariance[(index, index)].max(0.0).sqrt();
+    // The worst axis, because the limits hold for each.
     let offset_se_n = (4..7).map(se).fold(0.0, f64::max);
     let finite = gain.is_finite() && sd_n.is_finite() && offset_n.iter().all(|x| x.is_finite());
     finite.then(|| JointFit { gain, gain_se: se(3), offset_n, offset_se_n, sd_n })

@@ -49,6 +49,7 @@ fn rotation(angles: &Vector3<f64>) -> Rotation3<f64> {
 fn simplex(start: Vector3<f64>, cost: &impl Fn(&Vector3<f64>) -> f64) -> EulerVertex {
     let at = |point: Vector3<f64>| (point, cost(&point));
     let mut vertices =
+        // Half a radian: large enough to leave a flat start, small against the distance of the starts.
         [at(start), at(start + Vector3::x() * 0.5), at(start + Vector3::y() * 0.5), at(start + Vector3::z() * 0.5)];
     for _ in 0..MAX_STEPS {
         vertices.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -65,8 +66,11 @@ fn simplex(start: Vector3<f64>, cost: &impl Fn(&Vector3<f64>) -> f64) -> EulerVe
         } else if reflected.1 < second_worst.1 {
             reflected
         } else {
+            // Outside contraction if the reflected point is at least better than the worst, inside otherwise (Nelder
+            // and Mead 1965).
             let contracted = along(if reflected.1 < worst.1 { 0.5 } else { -0.5 });
             if contracted.1 >= worst.1.min(reflected.1) {
+                // Nothing along this line helps, so the whole simplex shrinks towards its best vertex.
                 vertices = vertices.map(|vertex| at((vertex.0 + best.0) / 2.0));
                 continue;
             }

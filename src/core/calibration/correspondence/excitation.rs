@@ -27,11 +27,13 @@ impl CorrespondenceExcitation {
             return Self::default();
         }
         let mut found = Self { second: 1.0, third: 1.0, weakest_n: f64::INFINITY, rank: 0 };
+        // Both sensors: a chain that turns the pushes differently would be seen in one of them only.
         for force in [|row: &PushRow| row.c_n, |row: &PushRow| row.s2_n] {
             let directions = Scatter::of(rows, |row| force(row).try_normalize(1e-9).unwrap_or_default());
             let forces = Scatter::of(rows, force);
             found.note(&directions.without(&[]));
             found.weakest_n = found.weakest_n.min(forces.without(&[])[2]);
+            // A fold with all rows would leave nothing to measure.
             for fold in folds.iter().filter(|fold| fold.len() < rows.len()) {
                 found.note(&directions.without(&directions.vectors[fold.clone()]));
             }
@@ -41,6 +43,7 @@ impl CorrespondenceExcitation {
     }
 
     fn note(&mut self, axes: &[f64; 3]) {
+        // Without any length all ratios are unknown: the safe value is zero.
         if axes[0] > 0.0 {
             self.second = self.second.min(axes[1] / axes[0]);
             self.third = self.third.min(axes[2] / axes[0]);
@@ -68,6 +71,7 @@ impl Scatter {
     fn without(&self, left_out: &[Vector3<f64>]) -> [f64; 3] {
         let sum = self.sum - left_out.iter().map(|v| v * v.transpose()).sum::<Matrix3<f64>>();
         let count = (self.vectors.len() - left_out.len()).max(1) as f64;
+        // Rounding can make an eigenvalue of a plane slightly negative.
         let mut axes: [f64; 3] = sum.symmetric_eigenvalues().map(|square| (square.max(0.0) / count).sqrt()).into();
         axes.sort_by(|a, b| b.total_cmp(a));
         axes

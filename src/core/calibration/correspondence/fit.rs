@@ -43,6 +43,7 @@ const MIN_SOLVABLE: usize = 3;
 pub fn fit(pairs: &[PushPair], options: &CorrespondenceOptions) -> Result<CorrespondenceReport, CorrespondenceError> {
     check(pairs)?;
     let limits = &options.limits;
+    // The weaker of the two sensors decides: a push that misses the tissue is felt at the wrist only.
     let strong = |pair: &PushPair| pair.f1_n.norm().min(pair.f2_n.norm()) >= limits.min_force_n;
     let (used, weak): (Vec<usize>, Vec<usize>) = (0..pairs.len()).partition(|&index| strong(&pairs[index]));
     let rows: Vec<PushRow> = used.iter().map(|&index| PushRow::of(&pairs[index], options.flip_s2)).collect();
@@ -51,6 +52,7 @@ pub fn fit(pairs: &[PushPair], options: &CorrespondenceOptions) -> Result<Corres
     let good: Vec<PushRow> = rows.iter().zip(&found.inlier).filter(|&(_, &good)| good).map(|(row, _)| *row).collect();
     let folds = folds(good.len());
     let excitation = CorrespondenceExcitation::of(&good, &folds, limits.min_spread);
+    // No pair has a chain: the rotation is then the one between the sensors.
     let target = if pairs.iter().all(|pair| pair.s1_from_c == UnitQuaternion::identity()) {
         FitTarget::S1FromS2
     } else {
@@ -102,6 +104,7 @@ fn solve(good: &[PushRow], folds: &[Range<usize>], target: FitTarget) -> Corresp
         let others = wahba(good[..fold.start].iter().chain(&good[fold.end..]));
         held_out_n.extend(good[fold.clone()].iter().map(|row| row.residual_in_s1_n(&others)));
     }
+    // Three per row, less the three angles that were fitted.
     let freedom = (3 * good.len() - 3) as f64;
     let noise_n = (fitted_n.iter().map(Vector3::norm_squared).sum::<f64>() / freedom).sqrt();
     let (rotation_wxyz, roll_pitch_yaw_deg) = parts(&rotation.into());
@@ -140,6 +143,7 @@ fn mistaken_input(
     if rows.len() < options.limits.min_pairs || spread.rank < 3 {
         return None;
     }
+    // Half the median: a coincidence hardly halves the error of all pushes.
     let better = |edit: fn(&PushPair) -> PushPair| {
         let rows: Vec<PushRow> = used.iter().map(|&index| PushRow::of(&edit(&pairs[index]), options.flip_s2)).collect();
         consensus(&rows).median_n < 0.5 * median_n
@@ -159,6 +163,7 @@ fn judge(
     mistaken: Option<&'static str>,
     limits: &CorrespondenceLimits,
 ) -> (Verdict, String) {
+    // First, because every later reason would send the operator to push again with the same wrong input.
     if let Some(reason) = mistaken {
         return (Verdict::PoorData, reason.to_owned());
     }
@@ -195,12 +200,14 @@ fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &Correspon
         return Some(format!("only {used} pushes reach {min_n} N, {needed} are required; push more often and harder"));
     }
     let agree = used - report.outliers.len();
+    // With many outliers the reason is the contradiction, which is reported further below.
     if agree < limits.min_pairs && fraction(report.outliers.len(), used) <= limits.outlier_fraction {
         return Some(format!("only {agree} pushes agree, {} are required; push more often", limits.min_pairs));
     }
     match rank {
         0 | 1 => Some(format!("the pushes lie along one line (spread {second:.2}); push in all directions")),
         2 => Some(format!("the pushes lie in one plane (spread {third:.2}); push in other directions too")),
+        // The spread is judged without strength; this compares the forces along the weakest axis with their noise.
         _ => {
             let noise_n = report.solution.as_ref()?.noise_n;
             (weakest_n < limits.min_signal * noise_n).then(|| {
@@ -223,6 +230,7 @@ fn disagreement(
     if fraction(outliers, used) > limits.outlier_fraction {
         return Some(format!("{outliers} of {used} pushes contradict the others; repeat them"));
     }
+    // Before the errors: gain and offset explain them, and name what to do.
     if let Some(diagnosis) = &solution.diagnosis {
         if diagnosis.gain_is_off(limits.gain_error) {
             return Some(gain_text(diagnosis.gain));

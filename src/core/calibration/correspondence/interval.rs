@@ -61,6 +61,7 @@ impl StretchSums {
         let mean_n = self.force_n.map(|sum| sum / count);
         let mut variance = 0.0;
         for (square, mean_n) in self.square_n2.iter().zip(&mean_n) {
+            // The difference of sums may be slightly negative by rounding; the maximum starts at zero.
             variance = (square / count - mean_n.component_mul(mean_n)).max().max(variance);
         }
         (mean_n, variance.sqrt())
@@ -92,6 +93,7 @@ impl SlidingInterval {
         }
         self.window.push_back(*reading);
         self.sums.add(reading, 1.0);
+        // A full buffer counts as a full interval (see `CAPACITY`).
         let mut full = self.window.len() == CAPACITY;
         while let Some(first) = self.window.front().copied()
             && (reading.t_s - first.t_s >= self.length_s || self.window.len() == CAPACITY)
@@ -108,6 +110,7 @@ impl SlidingInterval {
         let better = self.best.is_none_or(|best| {
             let now_n = f1_n.norm();
             let best_n = best.pair.f1_n.norm();
+            // A stronger interval replaces one that was not near the peak; among those near it the steadiest wins.
             best_n < NEAR_PEAK * now_n || (now_n >= NEAR_PEAK * best_n && deviation_n < best.deviation_n)
         });
         if better {
@@ -115,6 +118,7 @@ impl SlidingInterval {
             let near = self.window.back().map_or_else(UnitQuaternion::identity, |last| last.s1_from_c);
             let sum = self.window.iter().fold(Quaternion::default(), |sum: Quaternion<f64>, reading| {
                 let part = reading.s1_from_c.into_inner();
+                // A quaternion and its negative are the same rotation, so all are added with the same sign.
                 if part.dot(&near) < 0.0 { sum - part } else { sum + part }
             });
             let s1_from_c = UnitQuaternion::try_new(sum, 1e-9).unwrap_or(near);

@@ -119,16 +119,24 @@ pub struct CorrespondenceLimits {
 impl Default for CorrespondenceLimits {
     fn default() -> Self {
         Self {
+            // Two per axis of the tissue's force.
             min_pairs: 6,
             min_force_n: 0.5,
+            // A cone of 25 degrees (0.22) just passes.
             min_spread: 0.2,
+            // Three standard deviations.
             min_signal: 3.0,
+            // At 5 N, 1.5 degrees are 0.13 N across: the paper's error.
             uncertainty_deg: 1.5,
+            // Design choice: beyond a quarter, the pushes themselves are doubtful.
             outlier_fraction: 0.25,
+            // The paper's worst axis has 0.13 N (Validation I).
             held_out_mae_n: 0.15,
             min_r2: 0.9,
             gain_error: 0.1,
+            // Half of `end_n`: an offset below it cannot be mistaken for contact.
             offset_n: 0.15,
+            // Far above the precision of both solvers, far below `uncertainty_deg`.
             cross_check_deg: 0.1,
         }
     }

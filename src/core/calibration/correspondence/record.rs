@@ -49,6 +49,7 @@ impl CorrespondenceRecord {
             judgement: Judgement::new(report.verdict, report.reason.clone()),
             target: solution.target,
             flip_s2,
+            // The pairs that the fit used.
             pairs: report.pairs - report.weak.len() - report.outliers.len(),
             rotation_wxyz: solution.rotation_wxyz,
             roll_pitch_yaw_deg: parts(&solution.rotation()).1,

@@ -61,6 +61,7 @@ fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3
     };
     let varied = squares(&mut force_n.iter().map(|force_n| force_n - mean_n));
     let unexplained = squares(&mut error_n.iter().copied());
+    // A constant force has no variance to explain; zero fails every limit.
     let fraction = |unexplained: f64, varied: f64| if varied > 0.0 { 1.0 - unexplained / varied } else { 0.0 };
     (unexplained.zip_map(&varied, fraction).into(), fraction(unexplained.sum(), varied.sum()))
 }
@@ -96,6 +97,7 @@ pub(super) fn from_wxyz(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
 
 /// Returns the components of a rotation, with `w` not negative, and its angles in degrees.
 pub(super) fn parts(rotation: &UnitQuaternion<f64>) -> ([f64; 4], [f64; 3]) {
+    // One of the two quaternions of a rotation, so that files and tests compare equal.
     let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     let wxyz = [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign);
     (wxyz, frames::to_roll_pitch_yaw_deg(rotation).into())

@@ -35,8 +35,10 @@ pub struct CorrespondenceSessionSettings {
 impl Default for CorrespondenceSessionSettings {
     fn default() -> Self {
         Self {
+            // A push begins well above its end, so that noise does not start and end it several times.
             begin_n: 0.8,
             end_n: 0.3,
+            // A tenth of a second: an arm can hold still for that long, and noise averages over 100 samples at 1 kHz.
             stretch_s: 0.1,
             still_n: 0.3,
             rest_s: 0.5,
@@ -119,7 +121,7 @@ pub const TARGETS: [PushTarget; 9] = [
 ];
 
 /// Cosine of the angle within which a push counts for a target: 30 degrees. A person cannot push more precisely than
-/// that, and twelve targets cover all directions even so.
+/// that, and nine targets cover all directions of a push even so.
 const NEAR_TARGET: f64 = 0.866;
 /// More would hardly improve the result, and the session keeps every push in memory.
 const MAX_PUSHES: usize = 64;
@@ -156,7 +158,7 @@ impl CorrespondenceSession {
         }
     }
 
-    /// Adds one sample; returns the state of the session. `Recorded` and `InvalidRequest` last until the next push begins.
+    /// Adds one sample; returns the state of the session. `Recorded` and `Refused` last until the next push begins.
     pub fn step(&mut self, f1_n: Option<Vector3<f64>>, sample: &WristSample, t_s: f64) -> CorrespondencePhase {
         let reading = match self.reading(f1_n, sample, t_s) {
             Ok(reading) => reading,
@@ -232,10 +234,12 @@ impl CorrespondenceSession {
     }
 
     fn finish(&mut self) -> CorrespondencePhase {
+        // The window has never been full.
         let Some(best) = self.stretch.best() else { return CorrespondencePhase::Refused(PushRefusal::TooShort) };
         if best.deviation_n > self.settings.still_n {
             return CorrespondencePhase::Refused(PushRefusal::Moved { by_n: best.deviation_n });
         }
+        // The wrist felt a push but the tissue did not: the tool touched something else.
         if best.pair.f2_n.norm() < self.settings.options.limits.min_force_n {
             return CorrespondencePhase::Refused(PushRefusal::MissedTissue);
         }
@@ -255,6 +259,7 @@ impl CorrespondenceSession {
     /// Returns the next push to request: the first direction without a push. Without the arm's kinematics the
     /// directions are requested in turn. `None` when all are complete; further pushes still improve the fit.
     pub fn target(&self) -> Option<PushTarget> {
+        // Without directions the pushes can only be counted.
         if self.pushes.iter().any(|push| push.towards_in_world.is_none()) {
             return TARGETS.get(self.pushes.len()).copied();
         }

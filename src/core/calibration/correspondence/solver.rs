@@ -37,6 +37,7 @@ impl PushRow {
 pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a PushRow>) -> Rotation3<f64> {
     let moment = rows.into_iter().fold(Matrix3::zeros(), |sum, row| sum + row.c_n * row.s2_n.transpose());
     let decomposed = moment.svd(true, true);
+    // Not reached for finite sums; the identity fails every check that follows.
     let (Some(u), Some(v_t)) = (decomposed.u, decomposed.v_t) else { return Rotation3::identity() };
     let sign = (u.determinant() * v_t.determinant()).signum();
     Rotation3::from_matrix_unchecked(u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t)
@@ -71,9 +72,11 @@ const MIN_SINE: f64 = 0.25;
 /// refines them iteratively.
 pub(super) fn consensus(rows: &[PushRow]) -> Consensus {
     let mut lengths = Vec::with_capacity(rows.len());
+    // The hypotheses only start the refinement, so a coarse one is enough.
     let mut c_from_s2 = first_guess(rows, &mut lengths);
     let mut inlier = Vec::new();
     let mut median_n = 0.0;
+    // The set of agreeing rows usually repeats after two or three rounds; ten end a set that alternates.
     for _ in 0..10 {
         median_n = median_residual_n(rows, 1, &c_from_s2, &mut lengths);
         let cut_n = CUT * (median_n / MEDIAN_OF_LENGTH).max(FINEST_N);
@@ -89,6 +92,7 @@ pub(super) fn consensus(rows: &[PushRow]) -> Consensus {
 
 fn first_guess(rows: &[PushRow], lengths: &mut Vec<f64>) -> Rotation3<f64> {
     let stride = rows.len().div_ceil(JUDGES).max(1);
+    // The fit of all rows is a hypothesis too: it wins if nothing is wrong.
     let mut best = (f64::INFINITY, wahba(rows));
     let mut judge = |i: usize, j: usize| {
         let a = &rows[i];
@@ -105,6 +109,7 @@ fn first_guess(rows: &[PushRow], lengths: &mut Vec<f64>) -> Rotation3<f64> {
     if rows.len() <= EXHAUSTIVE {
         (0..rows.len()).for_each(|i| (0..i).for_each(|j| judge(i, j)));
     } else {
+        // A fixed seed: the same pushes always give the same result.
         let mut rng = fastrand::Rng::with_seed(1);
         (0..DRAWS).for_each(|_| judge(rng.usize(..rows.len()), rng.usize(..rows.len())));
     }

@@ -40,6 +40,7 @@ pub(super) trait Problem {
         let miss = self.miss(model, row);
         let part = |miss: Option<f64>, floor: Option<f64>| miss.zip(floor).map_or(0.0, |(miss, floor)| miss / floor);
         let size = part(miss.place_m, Self::FLOOR.place_m).max(part(miss.angle_rad, Self::FLOOR.angle_rad));
+        // NaN counts as infinitely wrong, so that it never wins a comparison.
         if size.is_nan() { f64::INFINITY } else { size }
     }
 }
@@ -98,6 +99,7 @@ fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<RowMiss>> {
     let folds = if rows.len() <= LEAVE_ONE_OUT { rows.len() } else { 10 };
     let mut misses = Vec::with_capacity(rows.len());
     for fold in 0..folds {
+        // Interleaved: neighbouring poses are similar and would not test each other.
         let (tested, training): (Vec<_>, Vec<_>) = rows.iter().enumerate().partition(|(i, _)| i % folds == fold);
         let training: Vec<P::Row> = training.into_iter().map(|(_, row)| *row).collect();
         let model = problem.solve(&training)?;
@@ -110,12 +112,14 @@ fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<RowMiss>> {
 /// hypothesis with the smallest median error (Rousseeuw 1984), refined until nothing changes.
 fn agreeing<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<usize>> {
     let whole = problem.guess(rows)?;
+    // All rows fit already, or there are too few to draw others from.
     if rows.iter().all(|row| problem.size(&whole, row) <= 1.0) || rows.len() <= P::HYPOTHESIS {
         return Some((0..rows.len()).collect());
     }
     let mut model = first_guess(problem, rows, whole);
     let mut kept = Vec::new();
     for _ in 0..10 {
+        // At least one floor, so that perfect data keep the rows within the noise.
         let cut = (CUT * median(problem, &model, rows) / MEDIAN_OF_LENGTH).max(1.0);
         let near: Vec<usize> = (0..rows.len()).filter(|&i| problem.size(&model, &rows[i]) <= cut).collect();
         if near == kept {
@@ -133,6 +137,7 @@ fn agreeing<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<usize>> {
 
 fn first_guess<P: Problem>(problem: &P, rows: &[P::Row], whole: P::Model) -> P::Model {
     let mut rng = fastrand::Rng::with_seed(1);
+    // The fit of all rows is a hypothesis too.
     let mut best = (median(problem, &whole, rows), whole);
     for _ in 0..DRAWS {
         let few: Vec<P::Row> = rng.choose_multiple(rows.iter().copied(), P::HYPOTHESIS);

@@ -107,6 +107,7 @@ impl PoseHold {
     /// Adds a finite sample at time `t_s` (s, increasing). Only poses that this calibration needs (`watched`) must be
     /// still.
     pub(super) fn step(&mut self, sample: &FrameSample, watched: [bool; POSES], t_s: f64) -> HoldState {
+        // Without a holding time every sample is a pose.
         if self.time_s <= 0.0 {
             return HoldState::Long(Box::new(*sample));
         }

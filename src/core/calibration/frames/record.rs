@@ -151,6 +151,7 @@ impl StoredPose {
 
 /// Returns the components of a rotation, with `w` not negative.
 pub(super) fn wxyz(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
+    // One of the two quaternions of a rotation, so that files compare equal.
     let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign)
 }
@@ -161,6 +162,7 @@ pub(super) fn rotation(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
 }
 
 pub(super) fn place_fault(place_m: &[f64; 3]) -> Option<&'static str> {
+    // Equal to `FARTHEST_M` in `sample.rs`.
     (!place_m.iter().all(|x| x.is_finite() && x.abs() <= 10.0)).then_some("a position is not finite or beyond 10 m")
 }
 

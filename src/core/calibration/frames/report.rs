@@ -130,6 +130,7 @@ impl<F> FrameReport<F> {
     }
 
     fn cause_within(&self, limits: &FrameLimits) -> FrameCause {
+        // The checks are ordered from the most basic cause to the weakest.
         let kept = self.poses - self.outliers.len();
         if kept < limits.min {
             return FrameCause::TooFew { have: kept, min: limits.min };
@@ -223,6 +224,7 @@ pub trait Calibration {
             let undone: Option<Vec<_>> = samples.iter().map(|sample| mistake.undone(sample, carrier)).collect();
             let Some(report) = undone.map(|samples| self.attempt(&samples)) else { continue };
             let size = report.held_out.place_m.or(report.held_out.angle_deg).unwrap_or(f64::INFINITY);
+            // Likelier mistakes come first in the list, so a later one has to be clearly better.
             let better = best.is_none_or(|(min, _)| size < CLEARLY * min);
             if report.verdict == Verdict::Accepted && better {
                 best = Some((size, mistake));

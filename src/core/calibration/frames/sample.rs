@@ -70,6 +70,7 @@ impl FrameSample {
     ) -> Option<Self> {
         let gravity::Orientation::Arm(world_from_s1) = pose.orientation else { return None };
         let base_from_flange = world_from_base.inverse() * world_from_s1 * flange_from_s1.inverse();
+        // A gravity pose has no position, and only its rotation is used.
         let pose_m = Isometry3::from_parts(Vector3::zeros().into(), base_from_flange);
         Some(Self { base_from_flange: Some(pose_m), wrench: Some(pose.wrench), ..Self::default() })
     }
@@ -127,6 +128,7 @@ impl FrameSample {
     /// Returns whether every number is finite and every rotation has length one.
     pub fn is_finite(&self) -> bool {
         let sound = |pose: &Isometry3<f64>| {
+            // A quaternion of another length is a damaged number, not a rotation.
             let unit = (pose.rotation.coords.norm() - 1.0).abs() < 1e-6;
             unit && pose.translation.vector.iter().all(|x| x.is_finite())
         };

@@ -27,7 +27,7 @@ const APART_RAD: f64 = 0.17;
 const MIN_SPREAD: f64 = 0.1;
 const PLENTY_SPREAD: f64 = 0.35;
 const PLENTY: usize = 12;
-/// Minimum weight, N, and as a multiple of the noise.
+/// Minimum weight, N, and as a multiple of the noise; 0.3 N is a tool of 30 g.
 const MIN_WEIGHT_N: f64 = 0.3;
 /// With less, noise turns the estimated direction by more than 10 degrees (1/5 rad).
 const MIN_SIGNAL: f64 = 5.0;
@@ -48,6 +48,7 @@ impl SensorMount {
     /// in its base frame.
     pub const fn new(active: UnitQuaternion<f64>, up_in_base: Vector3<f64>) -> Self {
         let limits =
+            // Six poses give 18 equations for seven unknowns.
             FrameLimits { min: 6, held_out: Sizes::angle(5.0), uncertainty: Sizes::angle(3.0), outliers: 0.25 };
         Self { active, up_in_base, limits }
     }
@@ -150,6 +151,7 @@ impl Problem for WeightFit {
     type Row = SensorMountRow;
     type Model = WeightModel;
     const HYPOTHESIS: usize = 4;
+    // 0.1 rad is a force error of a tenth of the weight.
     const FLOOR: RowMiss = RowMiss::of_angle(0.1);
 
     fn solve(&self, rows: &[SensorMountRow]) -> Option<WeightModel> {
@@ -216,6 +218,7 @@ impl Calibration for SensorMount {
         let Some(found) = examined(&WeightFit { sign: 1.0 }, &rows) else { return weightless(0.0, MIN_WEIGHT_N) };
         let kept: Vec<SensorMountRow> = found.kept.iter().map(|&i| rows[i]).collect();
         let weighed = found.model;
+        // Seven unknowns: rotation, weight and bias.
         let freedom = (3 * kept.len()).saturating_sub(7).max(1);
         let squares_n2: f64 = kept.iter().map(|row| weighed.error_n(row).norm_squared()).sum();
         let variance_n2 = squares_n2 / freedom as f64;
@@ -261,6 +264,7 @@ impl SensorMount {
         let (mirror, found) = error(-1.0)?;
         // If no rotation yields a weight, only the mirror image remains.
         let turn = error(1.0).map_or(f64::INFINITY, |(turn, _)| turn);
+        // Squared, because the errors are squares.
         if mirror >= MIRROR_FRACTION * MIRROR_FRACTION * turn {
             return None;
         }

@@ -111,6 +111,7 @@ impl<C: Calibration> FrameSession<C> {
 
     /// Returns whether the carrier, or the other one with which it may have been confused, is at a new pose.
     fn differs(&self, sample: &FrameSample) -> bool {
+        // If the sides are swapped, only the other side's pose changes, and the session must still record it.
         let carrier = self.calibration.carrier();
         let of_other = |sample: &FrameSample| {
             let pose = *sample.other_pose(carrier)?;

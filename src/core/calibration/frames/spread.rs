@@ -56,6 +56,7 @@ pub(super) fn lever_matrix<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) 
 /// variance that was estimated with this many degrees of freedom (3 F(3, freedom) within 3 % from 12 degrees of freedom
 /// on, and larger below).
 fn square_95(freedom: usize) -> f64 {
+    // 7.815 is the 95 % quantile of chi-squared with three degrees of freedom.
     7.815 / (1.0 - 3.2 / freedom.max(4) as f64)
 }
 
@@ -65,6 +66,7 @@ pub(super) fn ellipsoid_95(covariance: &Matrix3<f64>, freedom: usize) -> [Vector
         return [Vector3::repeat(f64::NAN); 3];
     };
     let mut axes: [Vector3<f64>; 3] = std::array::from_fn(|i| {
+        // Rounding can make an eigenvalue slightly negative.
         eigen.eigenvectors.column(i) * (eigen.eigenvalues[i].max(0.0) * square_95(freedom)).sqrt()
     });
     axes.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
@@ -93,6 +95,7 @@ pub(super) fn nearest_orthogonal(moment: &Matrix3<f64>, sign: f64) -> Option<Mat
     let u = decomposed.u?;
     let v_t = decomposed.v_t?;
     let last = sign * (u.determinant() * v_t.determinant()).signum();
+    // The weakest axis is turned over, because that changes the fit least.
     let order = decomposed.singular_values.imin();
     let mut signs = Vector3::repeat(1.0);
     signs[order] = last;

@@ -135,6 +135,7 @@ fn second_spread_m(points: &[Vector3<f64>]) -> f64 {
 /// Returns the axes of the table from its plane and the three points that define them; `None` if these are on one line.
 fn axes(plane: &FittedPlane, [origin, along, beside]: [Vector3<f64>; 3]) -> Option<Isometry3<f64>> {
     let onto = |v: Vector3<f64>| v - plane.normal * v.dot(&plane.normal);
+    // Half the minimum distance of two points: a shorter vector has no reliable direction.
     let x = onto(along - origin).try_normalize(APART_M / 2.0)?;
     let way = onto(beside - origin);
     let y = (way - x * way.dot(&x)).try_normalize(APART_M / 2.0)?;

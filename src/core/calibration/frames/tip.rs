@@ -21,7 +21,7 @@ use crate::calibration::Verdict;
 /// equal poses. Design choice.
 pub(super) const APART_RAD: f64 = 0.07;
 /// A session is complete with this number of poses, and with these rotations in degrees. With 20 poses, 95 % of 200
-/// simulated calibrations with a tracker have an error of at most 0.40 mm (`docs/frames.md`).
+/// simulated calibrations with a tracker have an error of at most 0.40 mm (`docs/results/frames.md`).
 const PLENTY: usize = 20;
 const PLENTY_DEG: f64 = 15.0;
 const PLENTY_SECOND_DEG: f64 = 10.0;

@@ -55,8 +55,10 @@ impl Compensator {
     /// Returns `None`, and resets the filter, if the wrench is not finite or the source of orientation is missing, not
     /// finite or defective.
     pub fn step_after(&mut self, dt_s: f64, sample: &WristSample) -> Option<Wrench> {
+        // A model that uses the arm's orientation has no filter, so the newest reading counts fully.
         let fraction = self.time_constant_s.map_or(1.0, |time_constant_s| -libm::expm1(-dt_s / time_constant_s));
         let read = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite());
+        // After a sample without an orientation the filter starts again from the next reading.
         self.field_m_s2 = read.map(|read| self.field_m_s2.map_or(read, |old| old + (read - old) * fraction));
         let gravity = self.model.predict(&self.field_m_s2?);
         Some(Wrench {

@@ -32,13 +32,16 @@ pub(super) fn agreeing(rows: &[GravityRow], floor_n: f64) -> Vec<usize> {
         return all;
     }
     let min = (AGREEING_FRACTION * rows.len() as f64).ceil() as usize;
+    // Without any solvable set all poses are used, and the verdict judges them.
     let Some(mut chosen) = start(rows, min) else { return all };
+    // The chosen poses usually repeat after a few rounds; the limit ends a set that alternates.
     for _ in 0..20 {
         let Some(residuals) = residuals(rows, &chosen) else { return all };
         let (order, sorted) = ranked(&residuals);
         // The correction for small samples is from Rousseeuw and Leroy (1987).
         let spread = sorted[rows.len() / 2] / MEDIAN_LENGTH * (1.0 + 5.0 / (rows.len() as f64 - 2.0));
         let limit = (DEVIATIONS * spread).max(floor_n);
+        // Never fewer than the fraction that must agree, so that a wrong start cannot shrink the set.
         let count = sorted.partition_point(|&r| r <= limit).max(min);
         let mut next = order[..count].to_vec();
         next.sort_unstable();
@@ -58,6 +61,7 @@ fn start(rows: &[GravityRow], min: usize) -> Option<Vec<usize>> {
         let set = rng.choose_multiple(0..rows.len(), SET);
         let Some(residuals) = residuals(rows, &set) else { continue };
         let (order, sorted) = ranked(&residuals);
+        // The residual at the required fraction decides; the poses beyond it may be wrong.
         if best.as_ref().is_none_or(|(score, _)| sorted[min - 1] < *score) {
             best = Some((sorted[min - 1], order[..min].to_vec()));
         }

@@ -21,6 +21,7 @@ pub(super) fn coverage(rows: &[GravityRow]) -> f64 {
 
 /// Returns point `i` of a spherical Fibonacci grid with nearly equal areas (Swinbank and Purser 2006).
 fn point(i: usize) -> Vector3<f64> {
+    // A Fibonacci grid: equal steps in height, turned by the golden angle.
     let z = 1.0 - (2.0 * i as f64 + 1.0) / POINTS as f64;
     let turn = std::f64::consts::PI * (3.0 - 5_f64.sqrt()) * i as f64;
     let radius = (1.0 - z * z).sqrt();
@@ -30,6 +31,7 @@ fn point(i: usize) -> Vector3<f64> {
 /// Returns the condition number of the rows `(u / g, 1)`: 1.7 for directions all over the sphere; larger if they lie in
 /// a cone or plane; infinite if they do not determine the model.
 pub(super) fn condition(rows: &[GravityRow]) -> f64 {
+    // Three columns of the gain and one of the bias need four rows.
     if rows.len() < 4 {
         return f64::INFINITY;
     }

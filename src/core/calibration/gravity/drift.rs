@@ -18,7 +18,7 @@ use crate::frames::WristSample;
 /// filters' transient as a drift.
 const SETTLE_S: f64 = 2.0;
 /// A bad verdict needs this many consecutive still intervals: a hand on the tool sways, whereas a bias does not
-/// (`docs/calibration.md`).
+/// (`docs/results/calibration.md`).
 const STRETCHES_FOR_BAD: f64 = 3.0;
 /// If there is no verdict after this time, the check reports the reason, s; a later still interval may still give a
 /// verdict.
@@ -83,6 +83,7 @@ impl DriftCheck {
 
     /// Adds a sample (`None` while the sensor is silent) at time `t_s` (s, increasing); returns the current result.
     pub fn step(&mut self, sample: Option<&WristSample>, idle: bool, t_s: f64) -> GravityDrift {
+        // A good verdict is final: from then on the tool may touch things.
         if matches!(self.drift, GravityDrift::Fine { .. } | GravityDrift::NotChecked(NotChecked::Engaged))
             || !t_s.is_finite()
         {
@@ -113,6 +114,7 @@ impl DriftCheck {
         let field = sample.filter(|sample| sample.is_finite()).and_then(|sample| self.model.field_m_s2(sample));
         let late = since_s > TIMEOUT_S;
         match (sample, field) {
+            // In the trocar the body wall holds the tool, so its force is not a bias.
             (Some(sample), Some(_)) if sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0) => {
                 self.still.reset();
                 self.give_up(NotChecked::InTrocar);
@@ -137,6 +139,7 @@ impl DriftCheck {
     fn judge(&mut self, fraction: f64) {
         let Some((wrench, field)) = self.still.mean() else { return };
         let by_n = (wrench.force_n - self.model.predict(&field).force_n).norm();
+        // One still interval is enough for a good verdict; a bad one needs `STRETCHES_FOR_BAD`.
         if by_n <= self.limit_n {
             self.drift = GravityDrift::Fine { by_n };
         } else if fraction >= STRETCHES_FOR_BAD {
@@ -147,6 +150,7 @@ impl DriftCheck {
     }
 
     fn give_up(&mut self, why: NotChecked) {
+        // A verdict is never replaced by the reason for a missing one.
         if matches!(self.drift, GravityDrift::Waiting | GravityDrift::NotChecked(_)) {
             self.drift = GravityDrift::NotChecked(why);
         }

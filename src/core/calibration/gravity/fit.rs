@@ -106,11 +106,13 @@ impl FitData {
 /// # Ok::<(), nima_core::calibration::gravity::GravityError>(())
 /// ```
 pub fn fit(poses: &[GravityPose], settings: &GravitySettings) -> Result<GravityReport, GravityError> {
+    // Any other number would scale the accelerometer.
     if !matches!(settings.imu_sign, -1 | 1) {
         return Err(GravityError::BadSign { sign: settings.imu_sign });
     }
     let source = checked(poses)?;
     let GravitySettings { imu_sign, limits, .. } = *settings;
+    // A torque model needs the torque of every pose.
     let has_torque = poses.iter().all(|pose| pose.has_torque);
     let frame = FitFrame { source, imu_sign, has_torque, floor_n: limits.outlier_floor_n, drifts: false };
     let data = FitData::new(&frame, rows(poses, imu_sign, OrientationReading::AsGiven));
@@ -162,6 +164,7 @@ fn errors(model: &GravityModel, row: &GravityRow) -> Wrench {
 /// Returns the training rows of each fold. Agreement is determined again for each fold, so that a held-out row has no
 /// influence.
 fn trainings(frame: &FitFrame, all: &[GravityRow], folds: usize) -> Vec<Vec<GravityRow>> {
+    // Interleaved folds: consecutive poses are similar and would not test each other.
     let training = |fold| -> Vec<GravityRow> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
     let agreeing = |rows: Vec<GravityRow>| frame.agreeing(&rows).into_iter().map(|i| rows[i]).collect();
     (0..folds).map(|fold| agreeing(training(fold))).collect()
@@ -173,6 +176,7 @@ fn held_out(kind: ModelKind, frame: &FitFrame, data: &FitData) -> Option<Vec<Wre
     let folds = data.trainings.len();
     for (fold, training) in data.trainings.iter().enumerate() {
         let model = frame.fit(kind, training)?;
+        // Outliers are not tested here: they are judged by their number.
         result.extend(data.inliers.iter().filter(|&&i| i % folds == fold).map(|&i| errors(&model, &data.all[i])));
     }
     Some(result)
@@ -209,6 +213,7 @@ fn judge(
     drift_n: Option<f64>,
 ) -> (Verdict, String) {
     let limits = &settings.limits;
+    // Before the limits, because a wrong sign also looks like poor data.
     if let Some(mistake) = mistake(report, poses, settings, frame) {
         return (Verdict::PoorData, mistake.to_owned());
     }
@@ -263,6 +268,7 @@ fn weightless(report: &GravityReport, limits: &GravityLimits) -> Option<String> 
     let fit = report.fit_of(ModelKind::Physical)?;
     let weight_n = report.mass_kg? * GRAVITY_M_S2;
     let noise_n = fit.force_n.fitted.sd.into_iter().fold(0.0, f64::max);
+    // Above the noise as well as above a fixed limit, because both can hide a tool.
     let min_n = limits.min_weight_n.max(limits.min_signal * noise_n);
     // Written so that NaN is rejected too.
     let seen = weight_n >= min_n;
@@ -279,6 +285,7 @@ fn poor(report: &GravityReport, fit: &ModelFit, limits: &GravityLimits) -> Optio
     let held_out = &fit.force_n.held_out;
     let mae_n = held_out.mean_mae();
     let max_n = held_out.largest();
+    // An error of the orientation causes an error in proportion to the weight.
     let mae_limit = limits.mae_n.max(limits.mae_fraction * weight_n);
     let max_limit = limits.max_n.max(limits.max_fraction * weight_n);
     let fraction = report.outliers.len() as f64 / report.poses as f64;
@@ -343,6 +350,7 @@ fn mistake(
     };
     candidates.iter().find_map(|&(reading, words)| {
         let other = FitData::new(frame, rows(poses, settings.imu_sign, reading));
+        // A correction has to pass the same limits as the data, otherwise chance would find mistakes.
         let sound = other.kept.len() >= limits.min_poses
             && coverage(&other.kept) >= limits.min_coverage
             && condition(&other.kept) <= limits.max_condition;

@@ -126,6 +126,7 @@ impl GravityModel {
     /// finite or defective.
     pub fn field_m_s2(&self, sample: &WristSample) -> Option<Vector3<f64>> {
         let field = match self.source {
+            // An accelerometer at rest measures the support, which is opposite to gravity.
             GravitySource::Imu => sample.acceleration_m_s2? * -f64::from(self.imu_sign),
             GravitySource::Arm => arm_field_m_s2(&sample.world_from_s1?),
         };
@@ -155,12 +156,14 @@ impl GravityModel {
 
 /// Returns the gravity vector in `s1`, m/s^2, from the arm's orientation.
 pub(super) fn arm_field_m_s2(world_from_s1: &UnitQuaternion<f64>) -> Vector3<f64> {
+    // `world` has z up.
     world_from_s1.inverse_transform_vector(&Vector3::new(0.0, 0.0, -GRAVITY_M_S2))
 }
 
 /// Returns the paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch
 /// `b = atan2(-ax, sqrt(ay^2 + az^2))` of `-u`. Sines and cosines are computed as ratios, without the angles.
 pub(super) fn paper_row(field_m_s2: &Vector3<f64>) -> SVector<f64, 5> {
+    // The paper's angles use the support that the accelerometer reads.
     let support = -field_m_s2;
     let across = libm::hypot(support.y, support.z);
     let whole = libm::hypot(support.x, across);

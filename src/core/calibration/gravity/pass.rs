@@ -6,6 +6,7 @@ use crate::frames::WristSample;
 /// Bin width of the force histogram, N: below the noise of a good sensor (0.01 to 0.05 N), so that it does not blur the
 /// result.
 const BIN_N: f64 = 0.01;
+// Up to 5 N; larger forces count in the last bin.
 const BINS: usize = 500;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +55,7 @@ impl CheckPass {
 
     /// Returns the result so far; passing needs one second of samples and 45 degrees of tilt.
     pub fn result(&self) -> PassResult {
+        // The 95th percentile, so that a single touch does not decide.
         let wanted = (self.samples as f64 * 0.95).ceil() as u64;
         let mut seen = 0;
         let below = |count: &u64| {
@@ -61,6 +63,7 @@ impl CheckPass {
             seen >= wanted
         };
         let p95_n = self.bins.iter().position(below).map_or(0.0, |bin| (bin + 1) as f64 * BIN_N);
+        // A thousand samples are one second at 1 kHz.
         let reason = if self.samples < 1000 {
             "too few samples yet; keep moving"
         } else if self.tilt_rad < 45_f64.to_radians() {

@@ -104,12 +104,14 @@ impl PrecheckSpread {
 
     fn deviation(&self) -> Vector3<f64> {
         let mean = self.sum / self.count.max(1.0);
+        // Rounding can make the difference of sums slightly negative.
         (self.squares / self.count.max(1.0) - mean.component_mul(&mean)).map(|variance| variance.max(0.0).sqrt())
     }
 
     /// Returns the standard deviation of white noise from these differences between samples; slow motion does not
     /// affect it.
     fn roughness(&self) -> Vector3<f64> {
+        // Half the mean square step equals the variance of white noise, and hardly contains a slow motion.
         (self.steps / (2.0 * (self.count - 1.0).max(1.0))).map(f64::sqrt)
     }
 }
@@ -158,6 +160,7 @@ impl PrecheckBlock {
 
     fn force_noise(&self) -> PrecheckFinding {
         let spread = &self.force_n;
+        // A working channel never repeats exactly over a whole interval.
         if spread.count >= SAMPLES_MIN && spread.steps.min() == 0.0 {
             let state = bad(
                 "one of its axes always reads the same value",
@@ -200,6 +203,7 @@ impl Precheck {
     pub fn step(&mut self, sample: Option<&WristSample>, t_s: f64) {
         let step_s = t_s - self.last_s;
         self.last_s = t_s;
+        // Time that the screen missed says nothing about the sensor.
         let counts = step_s > 0.0 && step_s <= HOLE_S;
         if !counts {
             self.newest = sample.copied();

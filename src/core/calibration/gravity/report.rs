@@ -41,17 +41,23 @@ pub struct GravityLimits {
 impl Default for GravityLimits {
     fn default() -> Self {
         Self {
+            // Six poses give 18 equations for the seven unknowns of the physical model.
             min_poses: 6,
             min_coverage: 0.30,
+            // A condition of 30 lets noise grow thirtyfold in the weakest direction.
             max_condition: 30.0,
             max_outliers: 0.25,
+            // Within the noise of a good sensor (0.01 to 0.05 N).
             mae_n: 0.05,
+            // 2 % of the weight correspond to an error of the orientation of about a degree.
             mae_fraction: 0.02,
             max_n: 0.20,
             max_fraction: 0.08,
             torque_mae_nm: 0.02,
             min_weight_n: 0.05,
+            // Three standard deviations.
             min_signal: 3.0,
+            // The noise of the noisiest sensor that passes the check.
             outlier_floor_n: 0.10,
         }
     }

@@ -44,7 +44,9 @@ impl Default for GravitySessionSettings {
             fit: GravitySettings::default(),
             still: StillSettings::default(),
             use_arm: false,
+            // Three times the noise of the noisiest sensor that passes the check.
             touched_n: 0.3,
+            // At 10 degrees the weight changes by a sixth across; closer poses add little.
             turn_rad: 10_f64.to_radians(),
         }
     }
@@ -184,6 +186,7 @@ impl GravitySession {
         let Some((mean, field)) = self.still.mean() else { return GravityPhase::Moving };
         let world_from_s1 = self.still.mean_world_from_s1();
         self.still.reset();
+        // Without an accepted model there is nothing to compare with, so the pose is kept.
         let by_n = self.running.map_or(0.0, |model| (mean.force_n - model.predict(&field).force_n).norm());
         if by_n > self.settings.touched_n {
             self.refused = Some(by_n);
@@ -192,6 +195,7 @@ impl GravitySession {
         let orientation = match (self.settings.use_arm, world_from_s1) {
             (true, Some(world_from_s1)) => Orientation::Arm(world_from_s1),
             (true, None) => return GravityPhase::NoSample,
+            // Back to the reading of the accelerometer, which is what files store.
             (false, _) => Orientation::Imu(field * -f64::from(self.settings.fit.imu_sign)),
         };
         let place = self.place();

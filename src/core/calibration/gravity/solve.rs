@@ -25,6 +25,7 @@ pub(super) fn solve(kind: ModelKind, rows: &[GravityRow], has_torque: bool) -> O
 /// pseudo-inverse.
 fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let svd = a.try_svd(true, true, f64::EPSILON, 200)?;
+    // Relative to the largest value, so that units do not matter.
     let cut = svd.singular_values.max() * RANK_FRACTION;
     let solution = svd.solve(b, cut).ok()?;
     solution.iter().all(|x| x.is_finite()).then_some(solution)
@@ -56,9 +57,11 @@ fn means(rows: &[GravityRow]) -> (Vector3<f64>, Vector3<f64>) {
 
 /// Returns the scale (kg) and the proper rotation that map the centred gravity vectors to the centred forces.
 pub(super) fn scaled_rotation(rows: &[GravityRow]) -> Option<(f64, Rotation3<f64>)> {
+    // Three rows have nine equations for seven unknowns.
     if rows.len() < 3 {
         return None;
     }
+    // Differences from the means remove the bias from the rotation.
     let (mean_force, mean_field) = means(rows);
     let mut cross = Matrix3::zeros();
     let mut power = 0.0;
@@ -67,6 +70,7 @@ pub(super) fn scaled_rotation(rows: &[GravityRow]) -> Option<(f64, Rotation3<f64
         cross += (row.wrench.force_n - mean_force) * field.transpose();
         power += field.norm_squared();
     }
+    // All poses in one direction do not determine a rotation.
     if power <= 0.0 {
         return None;
     }
@@ -77,6 +81,7 @@ pub(super) fn scaled_rotation(rows: &[GravityRow]) -> Option<(f64, Rotation3<f64
     let hand = if (u * v_t).determinant() < 0.0 { -1.0 } else { 1.0 };
     let signs = Vector3::new(1.0, 1.0, hand);
     let rotation = Rotation3::from_matrix_unchecked(u * Matrix3::from_diagonal(&signs) * v_t);
+    // The scale of the least-squares similarity (Umeyama 1991).
     let mass_kg = svd.singular_values.dot(&signs) / power;
     (mass_kg.is_finite() && rotation.matrix().iter().all(|x| x.is_finite())).then_some((mass_kg.max(0.0), rotation))
 }
@@ -87,6 +92,7 @@ fn gain(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
         return None;
     }
     let solution = least_squares(design(rows), &forces(rows))?;
+    // The columns are in units of g, so that they are near one; this converts back.
     let gain_kg: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| solution[(j, i)] / GRAVITY_M_S2));
     let bias_n = std::array::from_fn(|i| solution[(3, i)]);
     let torque = if has_torque { Some(torque(rows, &matrix(&gain_kg))?) } else { None };
@@ -99,6 +105,7 @@ pub(super) fn design(rows: &[GravityRow]) -> DMatrix<f64> {
 
 /// Solves for the paper's five columns.
 fn paper(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
+    // The paper's matrix A has five columns.
     if rows.len() < 5 {
         return None;
     }

@@ -106,6 +106,7 @@ impl StillInterval {
 
     /// Returns whether the tool is being moved although, for the last half second, only its force has changed.
     pub(super) fn only_force_moved(&self) -> bool {
+        // The orientation has been still for half a second, so only a touch can have moved the force.
         self.moved == Some(true) && self.last_s.is_some_and(|last| last - self.field_moved_s > 0.5)
     }
 
@@ -116,12 +117,14 @@ impl StillInterval {
 
     /// Returns the mean orientation from the arm over the interval; `None` unless every sample had an orientation.
     pub(super) fn mean_world_from_s1(&self) -> Option<UnitQuaternion<f64>> {
+        // A mean of some of the samples would belong to another time.
         self.whole.world_from_s1.mean().filter(|_| self.whole.turned >= self.whole.count)
     }
 
     /// Adds a sample; returns the fraction of the required time (1 or more: still long enough), `None` while the tool
     /// moves.
     pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
+        // A gap, or a clock that was set back, starts a new interval.
         if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
             self.reset();
             self.short_since_s = t_s;
@@ -146,6 +149,7 @@ impl StillInterval {
             }
             turned || (wrench.force_n - mean.force_n).norm() > self.settings.force_n
         };
+        // The interval starts again with this short mean.
         if far {
             self.whole = StillSums::default();
             self.since_s = t_s;

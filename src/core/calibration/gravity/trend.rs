@@ -19,6 +19,7 @@ pub(super) fn drift_n(rows: &[GravityRow], floor_n: f64) -> Option<f64> {
     if rows.len() < MIN_POSES {
         return None;
     }
+    // From -0.5 to 0.5, so that the slope is the change from the first pose to the last.
     let place = |i: usize| i as f64 / (rows.len() - 1) as f64 - 0.5;
     let design = DMatrix::from_fn(rows.len(), 5, |i, column| match column {
         0..3 => rows[i].field_m_s2[column] / GRAVITY_M_S2,

@@ -43,13 +43,16 @@ impl ResidualDrift {
     /// with them (N). The residual of that time is `delay - 1` entries back, because this tick's residual is still
     /// missing.
     pub(super) fn judge(&mut self, delay: usize, unexplained_n: Lanes, sent_n: Lanes) {
+        // Nothing to compare with during the first delay.
         let Some(then_n) = self.residuals_n.get(delay - 1).copied() else { return };
+        // Divided by the size of the error: least absolute error, in which a single impact counts little.
         let size = (unexplained_n - sent_n).map(f64::abs) + self.mean_n * FLATTEN;
         let weighted = then_n * size.recip_or_zero();
         let fade = libm::exp(-1.0 / (FRACTION_S * self.rate_hz));
         self.products = (self.products * fade + weighted * then_n).settled();
         self.right = (self.right * fade + weighted * unexplained_n).settled();
         let fraction = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();
+        // A fraction above 1 would let the offset grow by itself, one below 0 would swing.
         self.fraction = fraction.within(Lanes::ZERO, Lanes::splat(1.0));
     }
 
@@ -57,6 +60,7 @@ impl ResidualDrift {
     pub(super) fn step(&mut self, residual_n: Lanes, force_n: Lanes) -> Lanes {
         self.residuals_n.push(residual_n);
         let size_n = force_n.map(f64::abs);
+        // Ticks, not the motion clock: the offset drifts with time, not with motion.
         self.seen += 1.0;
         let memory = FORCE_S * self.rate_hz;
         self.mean_n = (self.mean_n + (size_n - self.mean_n) * self.seen.min(memory).recip()).settled();
@@ -67,6 +71,7 @@ impl ResidualDrift {
 
     /// Advances a tick without a measurement.
     pub(super) fn hold(&mut self) {
+        // The last residual stands for the missing one, so that the index stays a time.
         let last_n = self.residuals_n.get(0).copied().unwrap_or_default();
         self.residuals_n.push(last_n);
     }

@@ -11,12 +11,14 @@ use super::{
 };
 use crate::signal::Lanes;
 
+// The largest form (`Coupled`): 8 linear, 3 curved, 12 of the other axes and 2 that slip.
 pub(in super::super) const COLUMNS: usize = 25;
 
 /// The columns of one tick, or their parameters, one lane per axis.
 pub(super) type FormRow = [Lanes; COLUMNS];
 
 /// Leading columns of each nested model.
+/// Each list ends with the full form; the shorter ones are its prefixes, so one factorisation serves all.
 const TISSUE: &[usize] = &[8, 11];
 const SLIDING: &[usize] = &[8, 11, 13];
 const COUPLED: &[usize] = &[8, 11, 23, 25];
@@ -68,6 +70,7 @@ impl ModelForm {
                 if columns > TISSUE[0] {
                     3
                 } else {
+                    // Three columns per power after the constant, so `3 N + 1` over 3 is `N`.
                     1
                 }
             }
@@ -79,6 +82,7 @@ impl ModelForm {
     pub(super) fn position(self, posture: &Posture) -> Lanes {
         match self {
             Self::Tissue | Self::Sliding | Self::Coupled => posture.stance.x,
+            // The paper's columns are scaled, so their origin has to be in the same units.
             Self::Paper(_) => posture.features[0],
         }
     }
@@ -91,6 +95,7 @@ impl ModelForm {
     /// values of the slip columns.
     pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes, held: &SlipLanes) -> FormRow {
         let mut row = [Lanes::ZERO; COLUMNS];
+        // Positions count from a kept origin: a constant then absorbs the force there, and powers stay small.
         let d = self.position(posture) - origin;
         row[0] = one;
         if let Self::Paper(degree) = self {
@@ -107,15 +112,18 @@ impl ModelForm {
         let MotionState { u, surge, knee, .. } = posture.stance;
         let own = [d, u[0], u[1], u[2], u[3], surge];
         row[1..7].copy_from_slice(&own);
+        // The second difference (20 ms) is smooth enough for a sign, and still follows each reversal.
         row[7] = saturated(u[1], knee);
         row[8] = d * d;
         row[9] = row[8] * d;
         row[10] = d * u[1];
         if self.slips() {
+            // Last, so that the nested models without slip are prefixes.
             row[self.columns() - SLIPS..self.columns()].copy_from_slice(held);
         }
         if self == Self::Coupled {
             for (j, Lanes([x, y, z, _])) in own.into_iter().enumerate() {
+                // Rotated lanes: lane x gets the motion of y, lane y that of z, lane z that of x.
                 row[11 + j] = Lanes([y, z, x, 0.0]);
                 row[17 + j] = Lanes([z, x, y, 0.0]);
             }

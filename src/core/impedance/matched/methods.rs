@@ -82,6 +82,7 @@ impl RenderingMethod for Nima {
 
 impl LeaderEnd for Nima {
     fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
+        // A new `Slip` each time: no column of this form has a memory.
         moment.parcel.models.nima.force(moment.now, &mut Slip::default())
     }
 }

@@ -111,6 +111,7 @@ impl Learner {
     fn new(form: ModelForm, settings: &ImpedanceSettings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
         let solve_hz = SOLVE_HZ[usize::from(matches!(form, ModelForm::Paper(_)))];
+        // At least one tick: a slow loop solves in every tick.
         let every = ((rate_hz / solve_hz).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let memories_s = match form {
@@ -120,6 +121,7 @@ impl Learner {
         };
         let sums = memories_s
             .iter()
+            // One sample per renewal for the long memory (see `learn`), hence its lower rate.
             .zip([1, every])
             .map(|(memory_s, step)| MatchedSums::new(form.columns(), *memory_s, rate_hz / step as f64))
             .collect();
@@ -171,6 +173,7 @@ impl Learner {
     /// Adds the follower's newest motion and force (N), `None` if either was not measured; `sent`: the model of
     /// [`horizon`](Self::horizon) ticks ago. Returns the model to send.
     fn step(&mut self, posture: &Posture, force_n: Option<Lanes>, sent: Option<&MatchedModel>) -> &MatchedModel {
+        // Learn, then solve, then predict: the leader's part below uses only what was sent before.
         if let Some(force_n) = force_n {
             self.learn(posture, force_n);
         }
@@ -202,6 +205,7 @@ impl Learner {
     /// Continues without learning: the learnt parameters stay active.
     fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
+        // Also while resting one entry per renewal is stored, so that an index stays a time.
         let phase = self.tick % self.every;
         for ridge in 0..ridges_of(self.form).len() {
             if phase != self.phase(ridge) {
@@ -222,9 +226,11 @@ impl Learner {
             if self.form.slips() { *self.slip.step(posture, force_n, self.rate_hz) } else { SlipLanes::default() };
         let row = self.form.row(posture, self.one, origin, &held);
         // A long memory loses nothing by adding only one sample per renewal.
+        // The short memory is the first one.
         let memories = if self.tick.is_multiple_of(self.every) { self.sums.len() } else { 1 };
         for (memory, sums) in self.sums.iter_mut().enumerate().take(memories) {
             let full = self.experts.iter().rfind(|expert| ridges_of(self.form)[expert.ridge].memory == memory);
+            // The largest model of this memory weighs the samples: its error is the least biased.
             let error_n = full.map_or(force_n, |full| force_n - product(&full.parameters, &row, full.columns));
             sums.learn(&row, force_n, error_n, pace);
         }
@@ -279,6 +285,7 @@ impl Learner {
         for expert in &mut self.experts {
             let age = ages[expert.ridge];
             let Some(parameters) = expert.past.get(age) else { continue };
+            // Clipped like the leader's force: the error of an expert is the error that the hand would feel.
             let said_n = sent.clipped(product(parameters, row, expert.columns));
             expert.error_n =
                 (expert.error_n + ((force_n - said_n).map(f64::abs) - expert.error_n) * fraction).settled();
@@ -289,12 +296,14 @@ impl Learner {
             expert.weight = eighth_power((min_n + Lanes::splat(EQUAL_N)) / (expert.error_n + Lanes::splat(EQUAL_N)));
             sum += expert.weight;
         }
+        // Only the ratio of the errors counts, so that the weights are the same in every unit.
         let scale = sum.recip_or_zero();
         self.experts.iter_mut().for_each(|expert| expert.weight *= scale);
         self.drift.judge(self.horizon(), force_n - sent.clipped(*said_n), sent.offset_n);
     }
 
     /// Mixes the experts by their weights and adds the other data that the leader needs.
+    /// All experts are prefixes of the same columns, so their parameters can be added.
     fn mix(&mut self, force_n: Lanes) {
         let mut parameters = [Lanes::ZERO; COLUMNS];
         let mut heaviest = (f64::NEG_INFINITY, 0);
@@ -302,6 +311,7 @@ impl Learner {
             for (sum, parameter) in parameters.iter_mut().zip(&expert.parameters).take(expert.columns) {
                 *sum += *parameter * expert.weight;
             }
+            // Unused axes have weight zero through `one`.
             let [x, y, z, _] = (expert.weight * self.one).0;
             if x + y + z > heaviest.0 {
                 heaviest = (x + y + z, expert.columns);
@@ -317,6 +327,7 @@ impl Learner {
             bounds_n: self.envelope.bounds_n(),
             offset_n: Lanes::ZERO,
         };
+        // The offset corrects what the mixed model leaves of this tick's force.
         let said_n = self.model.clipped(product(&parameters, &self.row, self.form.columns()));
         self.model.offset_n = self.drift.step(force_n - said_n, force_n);
     }
@@ -333,6 +344,7 @@ impl FollowerEnd for Learner {
         if !seen.learn {
             return self.rest(seen.posture, sent);
         }
+        // The paper's columns need settled derivatives, the low-passes of the other forms do not.
         let measured = if is_paper { seen.usable } else { seen.good };
         let model = *self.step(seen.posture, measured.then_some(seen.force_n), sent);
         if is_paper {
@@ -351,6 +363,7 @@ impl FollowerEnd for Learner {
     fn reset(&mut self) {
         self.tick = 0;
         self.sums.iter_mut().for_each(MatchedSums::reset);
+        // Equal weights: before the first error no expert is known to be better.
         let weight = self.one * (1.0 / self.experts.len() as f64);
         for expert in &mut self.experts {
             expert.parameters = [Lanes::ZERO; COLUMNS];

@@ -51,6 +51,7 @@ impl MatchedModel {
             return None;
         }
         let (_, force) = slip.step(self, now);
+        // The offset is added after the clip: it is bounded on its own (`drift.rs`).
         force.is_finite().then(|| self.clipped(force) + self.offset_n)
     }
 
@@ -83,6 +84,7 @@ impl PackedNumbers for MatchedModel {
     fn read(row: &mut PackedReader<'_>) -> Option<Self> {
         let form = row.count(3)?;
         let paper = row.count(MAX_DEGREE)? as u8;
+        // The numbers of the forms are part of the packet's format: append, never reorder.
         let form = [ModelForm::Tissue, ModelForm::Sliding, ModelForm::Coupled, ModelForm::Paper(paper)][form];
         let degree = row.count(MAX_DEGREE)? as u8;
         let one = row.lanes()?;

@@ -11,6 +11,7 @@ use crate::signal::{Lanes, settled};
 pub(super) const SLIPS: usize = 2;
 /// Length at which each spring slips under the usual force, in usual motions (rms of the position above its 20 ms
 /// low-pass). Halving or doubling it changes the error by less than 3 %, because the fit weighs the columns.
+/// One spring slips within a usual motion, one beyond it: friction that builds up fast and slowly.
 const GIVES_IN_USUAL_MOTIONS: [f64; SLIPS] = [0.5, 2.0];
 /// Memory of the usual motion and load (s by the clock).
 const USUAL_S: f64 = 20.0;
@@ -29,10 +30,13 @@ pub(super) struct SlipSprings {
 impl SlipSprings {
     /// Adds a position, the force (N) on all axes, and the lengths per force (m/N) at which the springs slip.
     pub(super) fn step(&mut self, x: Lanes, force_n: Lanes, gives: &[f64; SLIPS]) -> &SlipLanes {
+        // The first position only sets the start: there is no travel before it.
         let way = self.last.replace(x).map_or(Lanes::ZERO, |last| x - last);
         let load_n = load(force_n);
         for (held, give) in self.held.iter_mut().zip(gives) {
             let limit = load_n * *give;
+            // Clamped after the travel is added: a spring at its limit slips, and turns back at once when the motion
+            // reverses.
             *held = (*held + way).within(-limit, limit);
         }
         &self.held
@@ -54,6 +58,7 @@ impl Slip {
         let held = self.stretch.step(now.stance.x, self.said_n, &model.gives);
         let row = model.form.row(now, model.one, model.origin, held);
         let said_n = product(&model.parameters, &row, model.form.columns());
+        // A force of zero unloads the springs, so one number that is not finite does not stay in them.
         self.said_n = if said_n.is_finite() { model.clipped(said_n) } else { Lanes::ZERO };
         (row, said_n)
     }
@@ -76,6 +81,7 @@ impl UsualSizes {
         for (mean, size) in [(&mut self.motion2, motion.norm()), (&mut self.force2, force_n.norm())] {
             *mean = settled(*mean + (size * size - *mean) * fraction);
         }
+        // Without any force so far no length is known, and a spring of length zero holds nothing.
         let give = if self.force2 > 0.0 { (self.motion2 / self.force2).sqrt() } else { 0.0 };
         GIVES_IN_USUAL_MOTIONS.map(|times| give * times)
     }

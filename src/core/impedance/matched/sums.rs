@@ -62,6 +62,8 @@ impl MatchedSums {
         let size_n = error_n.map(f64::abs);
         self.mean_error_n = (self.mean_error_n + (size_n - self.mean_error_n) * of_errors).settled();
         let weight =
+            // About 1 / error: least absolute error by reweighting. `FLATTEN` limits the weight of a sample that fits
+            // exactly.
             size_n.zip(self.mean_error_n, |size, mean| if mean > 0.0 { pace / (size / mean + FLATTEN) } else { pace });
         let fade = libm::exp(-pace / (self.memory_s * self.rate_hz));
         let columns = self.columns;
@@ -72,6 +74,7 @@ impl MatchedSums {
     pub(super) fn factorise(&mut self, ridge_s: f64) {
         let columns = self.columns;
         let mut ridge = self.mean_squares.map(|square| square * (ridge_s * self.rate_hz));
+        // A ridge on the constant would pull the force itself towards zero.
         ridge[0] = Lanes::ZERO;
         let elements = column_start(columns);
         self.factor.renew(&mut self.gram[..elements], &mut self.right[..columns], &ridge);

@@ -25,6 +25,7 @@ impl AgeGate {
         if age_s <= self.fade_after_s {
             return (1.0, Reason::Open);
         }
+        // Linear from 1 to 0: no step at either end, which the hand would feel as a knock.
         ((self.zero_after_s - age_s) / (self.zero_after_s - self.fade_after_s), Reason::Ageing)
     }
 }

@@ -34,9 +34,11 @@ impl Ceiling {
     pub fn under<const D: usize>(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
         let norm = force_n.norm();
         let max_n = self.max_n();
+        // Also true for a norm of zero, so the division below never sees it.
         if norm <= max_n {
             return (force_n, Reason::Open);
         }
+        // On equal limits the ceiling is named, because it is the one that the operator can change.
         let reason = if self.device_limit_n < self.ceiling_n { Reason::AboveDeviceLimit } else { Reason::AboveCeiling };
         // Shortened as a vector: limiting each axis would turn the force towards another direction.
         (force_n * (max_n / norm), reason)

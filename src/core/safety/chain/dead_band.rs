@@ -1,6 +1,8 @@
 //! Third gate: the paper's rule that no force is rendered below 1 mm/s, with a smooth edge and hysteresis to prevent
 //! chatter.
 
+// Larger values keep the force longer after a stop; smaller ones let tremor, which stands still twice a period,
+// switch it.
 /// Time constant with which the effective speed falls, s. Design choice.
 const FALL_S: f64 = 0.040;
 /// Upper limit of the effective speed, in thresholds: even a fast hand that stops closes the gate within 0.1 s.
@@ -30,6 +32,7 @@ impl DeadBand {
     /// Returns the fraction of the force that passes at this speed (m/s), `dt_s` (s) after the last call, 0 to 1. A NaN
     /// speed closes the gate.
     pub fn step(&mut self, speed_m_s: f64, dt_s: f64) -> f64 {
+        // Not a division by the threshold: the operator may set it to zero.
         if self.threshold_m_s <= 0.0 {
             return 1.0;
         }
@@ -39,9 +42,11 @@ impl DeadBand {
             self.counted_m_s = 0.0;
             return 0.0;
         }
+        // First-order low-pass in the form that stays stable for any `dt_s`.
         let fallen_m_s = self.lately_m_s + (speed_m_s - self.lately_m_s) * (dt_s / (FALL_S + dt_s));
         self.lately_m_s = fallen_m_s.max(speed_m_s).clamp(0.0, FAST * self.threshold_m_s);
         let play_m_s = 0.5 * self.threshold_m_s;
+        // `counted` may be up to half a threshold above the recent speed: this range is the play.
         self.counted_m_s = self.counted_m_s.clamp(self.lately_m_s, self.lately_m_s + play_m_s);
         let s = (self.counted_m_s / self.threshold_m_s - 1.0).clamp(0.0, 1.0);
         // A smooth step, so that the force has no kink at either end.

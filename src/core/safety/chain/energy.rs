@@ -21,6 +21,7 @@ use super::{EnergyMode, Reason};
 /// (`docs/results/release.md`).
 pub const ALLOWANCE_J: f64 = 0.030;
 /// Maximum energy stored for the hand to get back, J.
+/// Limits what a long compression of tissue may return: 200 mJ are 5 N over 40 mm.
 pub const MAX_J: f64 = 0.200;
 /// Time constant with which a surplus or a debt returns to the allowance, s. Without it, integration errors would
 /// accumulate over a session.
@@ -61,6 +62,7 @@ impl<const D: usize> Energy<D> {
         let travel_m = if travel_m.norm() <= JUMP_M_S * dt_s { travel_m } else { SVector::zeros() };
         // Low-pass of travel over time, arranged so that it never divides by zero time.
         self.hand_m_s += (travel_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
+        // At most the whole difference, also after a long gap.
         let leak = (dt_s / LEAK_S).min(1.0);
         self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&travel_m);
         // A debt is limited like a credit: otherwise a long error could close the gate for the rest of a session.
@@ -72,6 +74,7 @@ impl<const D: usize> Energy<D> {
         let fraction = (self.stored_j / SOFT_J).clamp(0.0, 1.0);
         let speed_m_s = self.hand_m_s.norm();
         let giving_w = force_n.dot(&self.hand_m_s);
+        // A force that takes energy out of the hand is never removed: it only slows the hand.
         if self.mode != EnergyMode::Control || fraction >= 1.0 || giving_w <= 0.0 || speed_m_s < 1e-6 {
             return (force_n, Reason::Open);
         }
@@ -83,12 +86,14 @@ impl<const D: usize> Energy<D> {
     /// Returns the energy that the hand may still receive, J; negative if it received too much. 0 while the gate is
     /// off.
     pub fn stored_j(&self) -> f64 {
+        // The screen shows the store; a gate that is off has none.
         if self.mode == EnergyMode::Off { 0.0 } else { self.stored_j }
     }
 
     /// Restarts from rest. The remaining store is discarded, but a debt is kept: otherwise toggling the permission
     /// could pump energy into the hand.
     pub fn reset(&mut self) {
+        // The position is forgotten: the hand may move freely while nothing is permitted.
         self.stored_j = self.stored_j.min(ALLOWANCE_J);
         self.hand_m = None;
         self.hand_m_s = SVector::zeros();

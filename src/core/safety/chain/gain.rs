@@ -16,6 +16,7 @@ impl Gain {
     /// Starts at this gain (at most 1, because a higher gain needs a second action); the gain changes by at most
     /// `rate_per_s` (1/s).
     pub const fn new(gain: f64, rate_per_s: f64) -> Self {
+        // NaN starts without force: of all gains only zero is safe for every force.
         let chosen = if gain.is_nan() { 0.0 } else { gain.clamp(GAIN.min, GAIN.max) };
         Self { chosen, above_one: false, now: chosen, rate_per_s }
     }

@@ -47,6 +47,7 @@ impl<const D: usize> Default for ForceRequest<D> {
     fn default() -> Self {
         Self {
             t_s: 0.0,
+            // Unknown counts as too old; the other defaults also give no force.
             force_n: None,
             age_s: f64::INFINITY,
             speed_m_s: 0.0,
@@ -84,6 +85,7 @@ impl<const D: usize> SafetyChain<D> {
     pub fn new(settings: ChainSettings, period_s: f64) -> Self {
         let mut settings = settings.pulled_in();
         let gain = Gain::new(settings.gain, settings.gain_rate_per_s);
+        // The clamped value, so that the report never shows a gain that is not applied.
         settings.gain = gain.chosen();
         Self {
             settings,
@@ -131,6 +133,7 @@ impl<const D: usize> SafetyChain<D> {
 
     /// Sets the dead band, m/s, clamped to 0 to 0.1; NaN is ignored.
     pub fn set_dead_band(&mut self, threshold_m_s: f64) {
+        // The default of a NaN would be a surprise while engaged: the current value stays.
         if !threshold_m_s.is_nan() {
             self.settings.dead_band_m_s = threshold_m_s.clamp(DEAD_BAND_M_S.min, DEAD_BAND_M_S.max);
             self.dead_band.threshold_m_s = self.settings.dead_band_m_s;
@@ -188,6 +191,7 @@ impl<const D: usize> SafetyChain<D> {
     /// ```
     pub fn step(&mut self, request: &ForceRequest<D>) -> (SVector<f64, D>, GateReport) {
         let mut report = GateReport { settings: self.settings, ..GateReport::default() };
+        // Taken before anything else, so that a refused request also advances the clock.
         let dt_s = self.since_last_s(request.t_s);
         if self.settings.energy != EnergyMode::Off {
             // The force that was really held, after the governor: the energy of a requested force never reached the
@@ -206,12 +210,15 @@ impl<const D: usize> SafetyChain<D> {
         if !t_s.is_finite() {
             return 0.0;
         }
+        // A clock that was set back gives zero: the slew limit then holds the last force for one tick.
         self.last_s.replace(t_s).map_or(self.period_s, |last_s| (t_s - last_s).max(0.0))
     }
 
     fn through(&mut self, request: &ForceRequest<D>, dt_s: f64, report: &mut GateReport) -> SVector<f64, D> {
         let admitted = admitted(request.force_n);
         let (fresh, age) = self.age.fraction(request.age_s);
+        // The ramps of gain and dead band advance also while no force is permitted, so that they have settled on
+        // engaging.
         let (gain, ramp) = self.gain.step(dt_s);
         report.gain = gain;
         report.note(Gate::Validity, admitted.err().unwrap_or_default());
@@ -219,8 +226,10 @@ impl<const D: usize> SafetyChain<D> {
         report.note(Gate::Gain, ramp);
         let aged_n = admitted.unwrap_or_else(|_| SVector::zeros()) * fresh;
         let moving_n = self.past_dead_band(aged_n, request.speed_m_s, dt_s, report);
+        // After the other gates: the report then also names what else would have held the force back.
         if !request.permitted {
             report.note(Gate::Permission, Reason::NotPermitted);
+            // The next permitted force starts from zero, not from the force before the pause.
             self.reset();
             return SVector::zeros();
         }
@@ -228,11 +237,14 @@ impl<const D: usize> SafetyChain<D> {
             // A stop takes effect at once: the slew limit does not apply to a release.
             SVector::zeros()
         } else {
+            // Gain before slew and ceiling, so that neither limit can be raised by the gain.
             self.limited(moving_n * gain, dt_s, report)
         };
+        // The force before the governor: a brake must not become the start of the next request.
         self.slew.left(limited_n);
         let reading =
             request.hand_m.map(|position_m| GovernorReading { t_s: request.t_s - request.hand_age_s, position_m });
+        // Last, because the governor may only see forces that are really applied.
         let governed = self.governor.step(request.t_s, reading, limited_n);
         report.note(Gate::Governor, governed.reason);
         report.governed = governed.withheld;
@@ -261,10 +273,12 @@ impl<const D: usize> SafetyChain<D> {
         report: &mut GateReport,
     ) -> SVector<f64, D> {
         let fraction = self.dead_band.step(speed_m_s, dt_s);
+        // A held force skips the band, but its state was advanced above, so switching the hold off causes no jump.
         if self.settings.static_hold || fraction >= 1.0 {
             return force_n;
         }
         report.note(Gate::DeadBand, if speed_m_s.is_finite() { Reason::HandSlow } else { Reason::SpeedUnknown });
+        // For the screen: how much force the band removed, not how much is left.
         report.withheld_n = force_n.norm() * (1.0 - fraction);
         force_n * fraction
     }

@@ -33,6 +33,7 @@ impl<const D: usize> Slew<D> {
     ///
     /// A late tick allows no more than a punctual one, because the hand feels the whole change at once.
     pub fn limited(&self, force_n: SVector<f64, D>, dt_s: f64) -> (SVector<f64, D>, Reason) {
+        // `dt_s` below the period (two ticks close together) allows less, so the rate holds over any two ticks.
         let step = force_n - self.last_n;
         let norm = step.norm();
         let max_n = self.n_per_s * dt_s.min(self.period_s);

@@ -28,6 +28,7 @@ pub fn admitted<const D: usize>(force_n: Option<SVector<f64, D>>) -> Result<SVec
     if !force_n.iter().all(|f| f.is_finite()) {
         return Err(Reason::NotFinite);
     }
+    // Per axis, because a norm could overflow to infinity for a finite force.
     if force_n.amax() > PLAUSIBLE_N { Err(Reason::Implausible) } else { Ok(force_n) }
 }
 

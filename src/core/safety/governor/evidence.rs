@@ -31,8 +31,10 @@ pub(super) const OUT_M_S: f64 = 0.008;
 /// Time that a grip of 400 N/m with 0.25 kg takes to respond to a change of the force, s.
 const ANSWER_S: f64 = 0.020;
 /// Fraction of the speed that the force gives a lone handle after a step.
+/// Half: a handle with twice the assumed mass still passes.
 const DRIVEN: f64 = 0.5;
 /// A hand that carries less than this fraction of a force has lost it.
+/// Above the error of the mass (`MASS_OFF`), so that a handle without a hand always counts as lost.
 const LOST: f64 = 0.4;
 /// Fraction of the force that a hand carried before a step counts as one.
 const CARRIED: f64 = 0.5;
@@ -97,8 +99,10 @@ struct MotionParts {
 
 impl MotionParts {
     fn of<const D: usize>(hand_n: &SVector<f64, D>, applied_n: &SVector<f64, D>) -> Self {
+        // The caller has checked that the force is above `WEAK_N`, so this never divides by zero.
         let size_n = applied_n.norm();
         let along = applied_n / size_n;
+        // A hand that carries a force pushes against it, hence the sign.
         let carried_n = -hand_n.dot(&along);
         Self { size_n, carried_n, aside_n: (hand_n + along * carried_n).norm() }
     }
@@ -124,6 +128,8 @@ impl<const D: usize> Evidence<D> {
     }
 
     fn pushes(&mut self, past: &ObserverHistory<D>) -> EvidenceAnswer {
+        // Short windows first: a strong force is recognised within 4 ms. `map_while` ends when the history is too
+        // short.
         for now in PUSHES_S.iter().map_while(|span_s| past.parabola(*span_s)) {
             let size_n = now.applied_n.norm();
             if !moves_along(&now) || now.scatter_n > SCATTER * size_n {
@@ -144,6 +150,7 @@ impl<const D: usize> Evidence<D> {
     }
 
     fn travels(&mut self, past: &ObserverHistory<D>) -> EvidenceAnswer {
+        // The same scatter limit as for the push, so that both judge only fits of the same quality.
         let known = |now: &Parabola<D>| now.scatter_n <= SCATTER * now.applied_n.norm();
         let fit = TRAVELS_S.iter().map_while(|span_s| past.parabola(*span_s)).find(known);
         if let Some(now) = fit.filter(moves_along) {
@@ -155,11 +162,13 @@ impl<const D: usize> Evidence<D> {
                 return self.travel(past, size_n, now.velocity_m_s.norm(), rare);
             }
         }
+        // One sample that a hand explains ends the run: travel counts only without interruption.
         self.run = None;
         EvidenceAnswer::No
     }
 
     fn travel(&mut self, past: &ObserverHistory<D>, size_n: f64, speed_m_s: f64, rare: bool) -> EvidenceAnswer {
+        // Kept from the first sample of the run, not moved along with it.
         let begins = ForceRun { from_m: past.position_m, from_rest: speed_m_s < REST_M_S };
         let run = self.run.get_or_insert(begins);
         let travel_m = (past.position_m - run.from_m).norm();
@@ -185,6 +194,7 @@ fn moves_along<const D: usize>(now: &Parabola<D>) -> bool {
 fn steps<const D: usize>(past: &ObserverHistory<D>) -> EvidenceAnswer {
     let mut alone = EvidenceAnswer::No;
     for [before_s, after_s] in STEPS_S {
+        // The splits become longer, so the first one that the history cannot fill ends the search.
         let Some(kink) = past.kink(before_s, after_s) else { break };
         let size_n = kink.applied_after_n.norm();
         // The applied force soon accelerates a released handle from rest; a handle that swings in a grip does not move
@@ -203,11 +213,13 @@ fn steps<const D: usize>(past: &ObserverHistory<D>) -> EvidenceAnswer {
         }
         // If the assumed mass is wrong, a step of the applied force looks like a step of the hand's force.
         let step_n = (kink.after_n - kink.before_n).dot(&along) - kink.step_error_n - MASS_OFF * range.change_n();
+        // Largest change of a hand's force during the kink: mass times jerk times half its length.
         let ramp_n = past.handle.mass_kg * HAND_M_S3 * 0.5 * kink.span_s;
         if step_n > ramp_n {
             return EvidenceAnswer::Certain;
         }
         if step_n > RARE_STEP * ramp_n {
+            // A longer split may still give certainty, so the search continues.
             alone = EvidenceAnswer::Dropped;
         }
     }

@@ -68,6 +68,7 @@ impl ErrorBound {
     /// sample, and the deviation of the parameter for samples of deviation 1.
     fn of(steps: f64, residual: f64, off: f64, deviation: f64) -> Self {
         let left = DEVIATIONS * residual * deviation;
+        // Below the bound of the reading's steps, the residual is rounding and not motion.
         let scatter = (off * deviation).max(if left > steps { left } else { 0.0 });
         Self { all: steps.max(scatter), scatter }
     }
@@ -78,6 +79,7 @@ impl<const D: usize> ObserverHistory<D> {
     fn window(&self, from: usize, span_s: f64) -> Option<usize> {
         let at_least = from + MIN_SAMPLES - 1;
         let begin_s = *self.t_s.get(from)?;
+        // Times count backwards from now, hence older samples are smaller.
         (at_least..self.count).find(|k| begin_s - self.t_s[*k] >= span_s - TOLERANCE_S)
     }
 
@@ -90,6 +92,7 @@ impl<const D: usize> ObserverHistory<D> {
     fn off_kg_m(&self, old: usize) -> f64 {
         let between =
             |k: usize| (self.from_now_m[k] - self.from_now_m[k + 1]).norm_squared() / (self.t_s[k] - self.t_s[k + 1]);
+        // Root mean square, because the errors of a fit add as squares.
         let speed_m_s = ((0..old).map(between).sum::<f64>() / -self.t_s[old]).sqrt();
         self.handle.mass_kg * speed_m_s * self.inexact_s
     }
@@ -114,12 +117,14 @@ impl<const D: usize> ObserverHistory<D> {
         let left = |k: usize| (self.y[k] - mean_y - slope * centred(k) - bend * square(k)).norm_squared();
         // Three parameters are fitted, so three degrees of freedom are lost.
         let residual = ((0..=end).map(left).sum::<f64>() / (n - 3.0)).sqrt();
+        // A reading is at most half a step off; all errors in the worst sign.
         let worst = 0.5 * self.handle.mass_kg * self.handle.step_m * weights;
         // y' = m v + c (x - x_now) + the impulse until now; the last two terms are zero at the newest sample.
         let velocity_m_s = (slope + bend * (2.0 * centred(0) - cubes / squares)) / self.handle.mass_kg;
         let error = ErrorBound::of(worst, residual, self.off_kg_m(end), 1.0 / norm.sqrt());
         let fit = Parabola {
             hand_n: bend * 2.0,
+            // Twice: the force is twice the bend of the parabola (y = F t^2 / 2).
             error_n: 2.0 * error.all,
             scatter_n: 2.0 * error.scatter,
             velocity_m_s,
@@ -145,6 +150,7 @@ impl<const D: usize> ObserverHistory<D> {
         let normal = (0..=end).map(|k| row(k) * row(k).transpose()).sum::<Matrix4<f64>>();
         let right = (0..=end).map(|k| row(k) * self.y[k].transpose()).sum::<SMatrix<f64, 4, D>>();
         // The inverse itself is needed, because it contains the weights of the errors.
+        // `None` if the samples are at equal times: there is no parabola through them.
         let inverse = normal.try_inverse()?;
         let solved = inverse * right;
         let left = |k: usize| (self.y[k] - solved.transpose() * row(k)).norm_squared();
@@ -157,9 +163,11 @@ impl<const D: usize> ObserverHistory<D> {
             let deviation = sum.dot(&(inverse * sum)).max(0.0).sqrt();
             ErrorBound::of(half_step * weights, residual, off, deviation)
         };
+        // After the step the curvature is the sum of the third and fourth parameter; the step is the fourth alone.
         let [after, step] = [Vector4::new(0.0, 0.0, 1.0, 1.0), Vector4::w()].map(error);
         let before_n: SVector<f64, D> = solved.row(2).transpose() / (span_s * span_s);
         let step_n: SVector<f64, D> = solved.row(3).transpose() / (span_s * span_s);
+        // The slope at the newest sample: the kink added curvature from its own time on.
         let slope: SVector<f64, D> = (solved.row(1) - solved.row(3) * (self.t_s[at] / span_s)).transpose() / span_s;
         let fit = Kink {
             before_n,

@@ -39,12 +39,15 @@ use self::{
 };
 use super::{PLAUSIBLE_N, Reason};
 
+// With one tick of delay a sampled damper overshoots from a quarter of `m / T` on (`z^2 - z + b T / m`); 0.15 leaves
+// room for the delay of the estimated velocity.
 /// A brake sampled with at most this fraction of `m / T` does not make the handle vibrate.
 const BRAKE_OF_MASS: f64 = 0.15;
 /// Below this speed nothing is braked, m/s. The estimated velocity of a handle at rest has noise of this size, and a
 /// brake on noise is felt as vibration.
 const STILL_M_S: f64 = 2e-3;
 /// Windows for judging the hand's force while no force is applied, s. The long one serves scattered readings, once enough time has passed.
+/// Design choice: shorter windows have larger errors, longer ones find a coasting handle later.
 const JUDGED_S: f64 = 0.009;
 const JUDGED_LONG_S: f64 = 0.028;
 /// Time after which a soft grip (400 N/m, 8 N s/m) pulls a handle by more than friction when the force has vanished, s.
@@ -59,6 +62,7 @@ const STOPPED_S: f64 = 0.060;
 const COASTING_N: f64 = 0.8;
 /// If a handle at rest moves by this distance, a hand moves it, m: tremor has 50 um at 9 Hz.
 const STIR_M: f64 = 60e-6;
+// Equal to the time that a grip takes to respond (`ANSWER_S`).
 const RESTED_S: f64 = 0.020;
 /// Rest without any sign of a hand after which the hand counts as gone, s: longer than a period of tremor.
 const GONE_AFTER_S: f64 = 0.150;
@@ -161,6 +165,7 @@ impl<const D: usize> Governor<D> {
             handle,
             // The smaller of the limits of the device and of the sampling; a stiffer brake would excite the handle
             // instead of stopping it.
+            // Without a mass nothing can be computed from a motion, so the governor has no say.
             brake_n_s_m: handle.brake_n_s_m.min(BRAKE_OF_MASS * handle.mass_kg / period_s),
             slew_n_per_s,
             period_s,
@@ -205,8 +210,10 @@ impl<const D: usize> Governor<D> {
         asked_n: SVector<f64, D>,
     ) -> GovernorOutput<D> {
         // The first tick, and a tick after the clock was set back, count as zero elapsed time.
+        // An invalid time does not become the last one: the next valid tick then counts its full duration.
         let before_s = if t_s.is_finite() { self.last_s.replace(t_s) } else { self.last_s };
         let dt_s = before_s.map_or(0.0, |before_s| (t_s - before_s).max(0.0));
+        // Negated `<=`, so that NaN counts as far.
         let far = |vector: &SVector<f64, D>, limit: f64| !vector.iter().all(|x| x.abs() <= limit);
         let reading_is_far = reading.is_some_and(|reading| far(&reading.position_m, FAR_M) || !reading.t_s.is_finite());
         if far(&asked_n, PLAUSIBLE_N) || reading_is_far || !t_s.is_finite() {
@@ -234,6 +241,7 @@ impl<const D: usize> Governor<D> {
     }
 
     /// Decides on the grip; returns the brake's force, N.
+    /// Before the reading, because the force was applied until the reading was taken.
     fn judge(&mut self, dt_s: f64, reading: Option<GovernorReading<D>>) -> SVector<f64, D> {
         self.observer.held(&self.applied_n, dt_s);
         let Some(reading) = reading else { return SVector::zeros() };
@@ -247,15 +255,19 @@ impl<const D: usize> Governor<D> {
         let alone = self.evidence.look(&past);
         self.grip = match (self.grip, alone) {
             (GripState::Held | GripState::Doubtful { .. }, EvidenceAnswer::Certain) => {
+                // A certain release also ends a doubt: both states withhold the force, only this one brakes.
                 GripState::LetGo(Since::default())
             }
             (GripState::Held, EvidenceAnswer::Pushed | EvidenceAnswer::Dropped) => GripState::Doubtful {
                 since: Since::default(),
                 force_n: self.applied_n,
+                // After a push the hand needs its answer time; a dropped force can be judged as soon as the window is
+                // filled.
                 ripe_s: if alone == EvidenceAnswer::Pushed { ANSWER_S } else { JUDGED_S },
             },
             (grip, _) => grip,
         };
+        // Too few samples since the last gap: keep the state, without a brake.
         let Some(now) = past.parabola(JUDGED_S) else { return SVector::zeros() };
         match self.grip {
             GripState::Held | GripState::Gone => SVector::zeros(),
@@ -266,6 +278,7 @@ impl<const D: usize> Governor<D> {
                 // motion of the hand.
                 let coasting = now.velocity_m_s.dot(&force_n) > OUT_M_S * force_n.norm() && force_n.norm() > COASTING_N;
                 self.notice(&mut since, &past, &now, dt_s, ripe);
+                // Only a motion along the former force counts; a handle at rest does not indicate a release.
                 since.coasts_s = if coasting { since.coasts_s } else { 0.0 };
                 self.grip = since.verdict().unwrap_or(GripState::Doubtful { since, force_n, ripe_s });
                 SVector::zeros()
@@ -282,11 +295,13 @@ impl<const D: usize> Governor<D> {
     /// Observes the handle without force; a pull counts only once it can be distinguished (`ripe`).
     fn notice(&mut self, since: &mut Since, past: &ObserverHistory<D>, now: &Parabola<D>, dt_s: f64, ripe: bool) {
         // A long tick counts as one observation, not as many.
+        // A late tick has one reading, so it is one observation.
         let looked_s = dt_s.min(self.period_s);
         let speed_m_s = now.velocity_m_s.norm();
         let friction_n = COULOMB_N + self.handle.damping_n_s_m * speed_m_s;
         let by_hand = |seen: &Parabola<D>| {
             let applied_n = past.range(seen.span_s, &SVector::zeros()).max_n;
+            // The mass error scales the applied force, so it widens the limit by that part.
             seen.hand_n.norm() > friction_n + MASS_OFF * applied_n + seen.error_n
         };
         let longer = if since.faded_s > JUDGED_LONG_S { past.parabola(JUDGED_LONG_S) } else { None };
@@ -297,6 +312,7 @@ impl<const D: usize> Governor<D> {
         since.pulls_s =
             if pulls && ripe { since.pulls_s + looked_s } else { (since.pulls_s - 2.0 * looked_s).max(0.0) };
         since.coasts_s = if !pulls && ripe { since.coasts_s + looked_s } else { 0.0 };
+        // Under a third of the friction a free handle stays where it is, so its rest says nothing about a force.
         let quiet = self.withheld >= 1.0 && self.applied_n.norm() < 0.3 * COULOMB_N;
         let moved_m = (past.position_m - self.rest_m).norm();
         if !quiet || moved_m > STIR_M + 2.0 * self.handle.step_m {
@@ -307,6 +323,7 @@ impl<const D: usize> Governor<D> {
             self.rest_m = past.position_m;
             since.rests_s = 0.0;
         } else if moved_m > 1.5 * self.handle.step_m {
+            // Moved by one to two steps: neither rest nor a hand; the time of rest waits.
             since.rests_s = since.rests_s.min(RESTED_S + looked_s);
         } else {
             since.rests_s += looked_s;
@@ -315,6 +332,7 @@ impl<const D: usize> Governor<D> {
 
     fn brake(&self, now: &Parabola<D>) -> SVector<f64, D> {
         let speed_m_s = now.velocity_m_s.norm();
+        // Offset by the still speed, so that the brake starts from zero and not with a step.
         let brake_n = self.brake_n_s_m * (speed_m_s - STILL_M_S).max(0.0);
         now.velocity_m_s * (-brake_n / speed_m_s.max(STILL_M_S))
     }
@@ -333,6 +351,8 @@ impl<const D: usize> Governor<D> {
                 }
                 // A decrease of the request uses up part of the slew limit; the brake gets the rest.
                 let max_n = asked_n.norm();
+                // If the request shrinks, the brake may not exceed it: it is never stronger than the force the
+                // operator expects.
                 let kept_n = within(self.applied_n, max_n);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
                 kept_n + within(within(brake_n, max_n) - kept_n, room_n)
@@ -343,6 +363,7 @@ impl<const D: usize> Governor<D> {
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);
                 // The small number only prevents a division by zero: without a request there is nothing to fade.
                 let change = (room_n / asked_n.norm().max(1e-9)).min(1.0);
+                // In doubt the whole slew limit is used to fade; the return takes `RETURN_S`.
                 let fades = self.grip != GripState::Held;
                 let back = change.min(dt_s / RETURN_S);
                 self.withheld = if fades { (self.withheld + change).min(1.0) } else { (self.withheld - back).max(0.0) };

@@ -69,6 +69,7 @@ pub(super) struct Observer<const D: usize> {
 impl<const D: usize> Observer<D> {
     pub(super) fn new(handle: FreeHandle) -> Self {
         let blank = ObserverSample { t_s: 0.0, position_m: SVector::zeros(), applied_n: SVector::zeros() };
+        // A mass of zero would divide by zero; the governor does not watch such a handle anyway.
         let handle = FreeHandle { mass_kg: handle.mass_kg.max(MIN_KG), ..handle };
         Self {
             handle,
@@ -109,6 +110,7 @@ impl<const D: usize> Observer<D> {
                 self.ring[self.newest].applied_n = self.impulse_n_s / self.over_s;
             }
             self.moved_m = (position_m - self.ring[self.newest].position_m).norm();
+            // First order suffices: a step is far below `REMEMBERED_S`, and a gap was handled above.
             self.inexact_s *= 1.0 - since_s.max(0.0) / REMEMBERED_S;
         }
         self.newest = (self.newest + 1) % ROOM;
@@ -116,6 +118,7 @@ impl<const D: usize> Observer<D> {
         self.count = (self.count + 1).min(ROOM);
         self.impulse_n_s = SVector::zeros();
         self.over_s = 0.0;
+        // After the sample is stored, because the judgement compares the last three.
         self.judge_times();
     }
 
@@ -132,6 +135,7 @@ impl<const D: usize> Observer<D> {
         }
         let at = |back: usize| &self.ring[(self.newest + ROOM - back) % ROOM];
         let [new, mid, old] = [at(0), at(1), at(2)];
+        // Unequal intervals are common (USB), so the path between the outer readings is weighted by time.
         let [after_s, before_s] = [new.t_s - mid.t_s, mid.t_s - old.t_s];
         let speed_m_s = (new.position_m - old.position_m).norm() / (after_s + before_s);
         if after_s > CLOSE_S || before_s > CLOSE_S || speed_m_s < MOVES_M_S {
@@ -139,7 +143,9 @@ impl<const D: usize> Observer<D> {
         }
         let between_m = (new.position_m * before_s + old.position_m * after_s) / (after_s + before_s);
         let bend_m = 0.5 * BENDS_M_S2 * after_s * before_s + self.handle.step_m;
+        // A hand's largest acceleration and one reading step explain this much without an error of the time.
         let off_m = ((mid.position_m - between_m).norm() - bend_m).max(0.0);
+        // Twice: the middle reading shows only half of a shift that affects one of the outer ones.
         self.inexact_s = self.inexact_s.max(2.0 * off_m / speed_m_s);
     }
 
@@ -155,6 +161,7 @@ impl<const D: usize> Observer<D> {
             let sample = self.ring[(self.newest + ROOM - back) % ROOM];
             let next = self.ring[(self.newest + ROOM - back + 1) % ROOM];
             let dt_s = next.t_s - sample.t_s;
+            // Exact for a force that is constant between two samples.
             twice_n_s2 += impulse_n_s * dt_s + sample.applied_n * (0.5 * dt_s * dt_s);
             impulse_n_s += sample.applied_n * dt_s;
             travel_m_s += (sample.position_m + next.position_m - now.position_m * 2.0) * (0.5 * dt_s);

@@ -8,7 +8,7 @@
 //! normal behaviour.
 
 /// Time for which a number must have changed before its rest is a fault, s. Design choice, with no false alarm in 136
-/// healthy minutes (`docs/faults.md`).
+/// healthy minutes (`docs/results/faults.md`).
 const LIVELY_S: f64 = 3.0;
 /// A number that rests for longer does not change continuously, s: data of 40 Hz, repeated at the rate of the
 /// connection.
@@ -28,7 +28,7 @@ const FORGOTTEN_S: f64 = 60.0;
 /// product of two such forces 48 times. White noise does so in two of three readings.
 const NOISY_TURNS: f64 = 60.0;
 /// A number of a slow device counts as noisy if it changes direction in this fraction of the readings. White noise does
-/// so in two of three. Design choice, with no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// so in two of three. Design choice, with no false alarm in 136 healthy minutes (`docs/results/faults.md`).
 const NOISY_FRACTION: f64 = 0.35;
 /// Longest rest of a noise-free number whose resolution is fine enough for a judgement, s. A coarser one cannot be
 /// distinguished from a frozen one within the 20 ms. Design choice.
@@ -80,6 +80,7 @@ impl ChannelExtreme {
     const NONE: Self = Self { at: f64::NAN, hits: 0, ago: 0 };
 
     const fn is_at(&self, value: f64) -> bool {
+        // Bits instead of `==`: -0.0 and 0.0 are different readings, and NaN is equal to itself.
         value.to_bits() == self.at.to_bits()
     }
 
@@ -146,6 +147,7 @@ impl PlausibilityChannel {
 
     /// Adds the number of a new reading at `t_s`; NaN represents a missing number.
     pub(super) fn look(&mut self, now: f64, t_s: f64, around: &Around) -> Option<ReadingFault> {
+        // A missing number starts the memory again, because the number that returns may behave differently.
         if now.is_nan() || self.last.is_nan() {
             let since_s = t_s;
             let since_m = around.travel_m;
@@ -163,6 +165,7 @@ impl PlausibilityChannel {
         }
         self.learn(t_s);
         let is_frozen = if now.to_bits() == self.last.to_bits() {
+            // See `REPEATED`: a rest is judged by its time and by the number of equal readings.
             self.repeats += 1;
             self.rest(t_s, around)
         } else {
@@ -179,6 +182,7 @@ impl PlausibilityChannel {
             return;
         }
         let [newest, (rested_s, is_coarse)] = self.seen;
+        // The loss of one period of learning.
         let kept = (1.0 - LEARNT_S / FORGOTTEN_S).max(0.0);
         self.longest_s = rested_s.max(self.longest_s * kept);
         self.coarse_s = if is_coarse { t_s } else { self.coarse_s };
@@ -204,6 +208,7 @@ impl PlausibilityChannel {
 
     fn rest(&mut self, t_s: f64, around: &Around) -> bool {
         let stood_s = t_s - self.since_s;
+        // A number that rests long before it was lively is slow by nature (40 Hz data), so the clock starts again.
         if !self.is_lively() {
             if stood_s > RESTLESS_S && self.repeats > 1 {
                 self.begin(t_s);
@@ -223,6 +228,7 @@ impl PlausibilityChannel {
 
     fn change(&mut self, now: f64, t_s: f64, around: &Around) {
         let rested_s = self.t_s - self.since_s;
+        // From the last change, as opposed to `rested_s`, which ends at the last reading.
         let dt_s = t_s - self.since_s;
         if rested_s > RESTLESS_S && self.repeats > 1 {
             self.begin(t_s);
@@ -230,8 +236,10 @@ impl PlausibilityChannel {
             self.seen[0].0 = self.seen[0].0.max(rested_s);
         }
         let step = now - self.last;
+        // A window of about one second: the factor loses everything older than that.
         let kept = (1.0 - dt_s).max(0.0);
         self.turns = self.turns * kept + f64::from(u8::from(step * self.last_step < 0.0));
+        // Decayed with the same factor as the turns, so their ratio stays a fraction.
         self.changes = self.changes * kept + 1.0;
         self.min_step = self.min_step.min(step.abs());
         self.last = now;

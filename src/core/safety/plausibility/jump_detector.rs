@@ -5,12 +5,13 @@ use nalgebra::SVector;
 use super::Fall;
 
 /// Number of consecutive samples that are bridged; the next one is a jump.
+/// Design choice: each further sample reports a real jump one period later; fewer turn single spikes into faults.
 const BRIDGED: u32 = 2;
 /// This many bridged samples, minus one for each [`CALM`] good samples, are no longer treated as spikes: the fourth
-/// spike in a hundred samples is a fault (`docs/faults.md`).
+/// spike in a hundred samples is a fault (`docs/results/faults.md`).
 const FREQUENT: f64 = 4.0;
 /// Number of good samples that compensate a bridged sample. Design choice, with no false alarm in 136 healthy minutes
-/// (`docs/faults.md`).
+/// (`docs/results/faults.md`).
 const CALM: f64 = 25.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -69,12 +70,14 @@ impl<const D: usize> JumpDetector<D> {
         self.moved = now - last;
         self.last = Some(*now);
         self.in_a_row = 0;
+        // The new vector is believed after a jump: the device may have moved, and the fault already stops the arm.
         (*now, (far && fall != Fall::Over) || frequent)
     }
 
     /// Handles a vector without a new reading: only its other inputs can change it.
     fn between(&mut self, now: &SVector<f64, D>, last: &SVector<f64, D>, far: bool) -> (SVector<f64, D>, bool) {
         let believed = if far || self.in_a_row > 0 { last } else { now };
+        // The reading is the same, so the difference is caused by the other inputs and does not count as travel.
         self.moved = believed - last;
         self.last = Some(*believed);
         (*believed, self.level >= FREQUENT)

@@ -8,7 +8,7 @@
 //! scenes (`nima study faults`). The caller must remove non-finite numbers first.
 //!
 //! No check can detect a bias that creeps, a gain that is wrong from the start, or axes that are swapped before the
-//! first contact. `docs/faults.md` lists how large those errors become.
+//! first contact. `docs/results/faults.md` lists how large those errors become.
 
 mod channel;
 mod device;
@@ -37,6 +37,8 @@ const HAND_MAX_M_S: f64 = 3.0;
 /// Maximum speed of an arm's tip, m/s: three times the fastest command.
 const TIP_MAX_M_S: f64 = 1.0;
 /// Difference of positions that has other causes than motion, m.
+/// Quantisation, noise and the scatter of the poll times, which exist at rest too. Larger values hide jumps of a slow
+/// hand.
 const POSITION_SLACK_M: f64 = 2e-3;
 /// Maximum change of the force of a resting tip between two samples, N: nine standard deviations of the noisiest sensor
 /// here.
@@ -50,6 +52,7 @@ const SETTLE_S: f64 = 0.05;
 /// to the wrist (travel of the axes).
 const TURN_MAX_RAD_S: f64 = 5.0;
 /// Difference of angles that has other causes than motion, rad.
+/// About 6 degrees: as for positions, noise and poll times turn a resting wrist a little.
 const TURN_SLACK_RAD: f64 = 0.1;
 /// The tip's travel between two readings of the arm is the maximum over this many readings, because arm and force
 /// sensor run on their own clocks.
@@ -58,7 +61,7 @@ const WAY_READINGS: usize = 4;
 /// lever of the shaft.
 const LEVER_M: f64 = 0.5;
 /// If the command moves this far while the tip's position stays identical to the last bit, the tip does not follow, m.
-/// Design choice, with no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// Design choice, with no false alarm in 136 healthy minutes (`docs/results/faults.md`).
 const STUCK_COMMAND_M: f64 = 0.5e-3;
 /// After a longer gap between two checks the possible travel is unknown, s.
 const GAP_S: f64 = 0.015;
@@ -179,6 +182,7 @@ impl Default for Plausibility {
     fn default() -> Self {
         Self {
             sensor: DeviceMemory::new(SENSOR_BLOCK),
+            // Position channels repeat whole counts, hence the longer block for handle and arm.
             handle: DeviceMemory::new(ENCODER_BLOCK),
             arm: DeviceMemory::new(ENCODER_BLOCK),
             link: DeviceMemory::new(SENSOR_BLOCK),
@@ -202,6 +206,7 @@ impl Plausibility {
     /// Starts a new engagement: earlier commands and forces no longer count.
     pub fn engage(&mut self) {
         self.moves.opposed = TouchMemory::default();
+        // The handle's memory of its values is kept: only forces of the previous engagement are irrelevant.
         self.moves.tip_stuck = Stuck::default();
         self.handle_stuck.engage();
     }
@@ -230,6 +235,7 @@ impl Plausibility {
             ReadingFault::Saturated => Implausible::ForceSaturated,
             ReadingFault::Repeats => Implausible::ForceRepeats,
         };
+        // The order is the priority: a wrong sensor explains a force along the motion, not the reverse.
         let doubts = [
             force_jumped.then_some(Implausible::ForceJumped),
             seen.raw.sensor.and(self.sensor.wrong()).map(of_sensor),
@@ -249,6 +255,7 @@ impl Plausibility {
     fn pass(&mut self, t_s: f64) -> f64 {
         let dt_s = t_s - self.last_t_s;
         self.last_t_s = t_s;
+        // Also false for NaN times, which then count as a gap.
         if dt_s > 0.0 && dt_s <= GAP_S {
             return dt_s;
         }
@@ -261,8 +268,11 @@ impl Plausibility {
 
     fn admit_tip(&mut self, seen: &PlausibilityInput, dt_s: f64) -> (Vector3<f64>, bool) {
         let moves = &mut self.moves;
+        // The silence of a remote device is added, because its tip may have moved while no data arrived.
         let moved_s = news(&mut self.arm, seen.raw.arm.as_ref(), dt_s + moves.silent_s[0]);
         let max_m = POSITION_SLACK_M + TIP_MAX_M_S * moved_s.unwrap_or(dt_s);
+        // Without a new reading of the arm the tip can change only through other inputs, so it is bridged but not
+        // counted.
         let (tip_m, jumped) = moves.tip.admit(&seen.tip_m, max_m, moved_s.is_some());
         let travel_m = moves.tip.moved().norm();
         self.travel_m += travel_m;
@@ -270,11 +280,13 @@ impl Plausibility {
         let Some(moved_s) = moved_s else { return (tip_m, jumped) };
         moves.travels_m.rotate_right(1);
         moves.travels_m[0] = travel_m;
+        // A repeated time gives no travel, so nothing can be said about a stuck tip.
         if moved_s > 0.0 {
             let t_s = seen.raw.arm.map_or(seen.t_s, |arm| arm.arrival_s);
             moves.tip_stuck.look(&seen.tip_m, &seen.command_m.unwrap_or(seen.tip_m), STUCK_COMMAND_M, t_s);
         }
         let max_rad = TURN_SLACK_RAD + TURN_MAX_RAD_S * moved_s;
+        // Two axes as one vector, because the detector compares vectors.
         let turned = seen.world_from_s1.is_some_and(|turn| moves.turn.admit(&axes(&turn), max_rad, true).1);
         let joints = seen.raw.arm.map(|arm| SVector::from(arm.channels));
         let leapt = joints.is_some_and(|joints| moves.joints.admit(&joints, max_rad, true).1);
@@ -295,6 +307,8 @@ impl Plausibility {
     fn admit_force(&mut self, seen: &PlausibilityInput, dt_s: f64) -> (Vector3<f64>, bool) {
         let moves = &mut self.moves;
         let settles = seen.t_s - *moves.began_s.get_or_insert(seen.t_s) < SETTLE_S;
+        // The largest of the last readings: the sensor may have measured before the arm reported the motion that
+        // caused it.
         let widest_m = moves.travels_m.iter().copied().fold(moves.unfelt_m, f64::max);
         let max_n = if settles { f64::INFINITY } else { FORCE_SLACK_N + STIFFEST_N_M * widest_m };
         let travel_m = self.travel_m;
@@ -307,6 +321,7 @@ impl Plausibility {
         let is_new = raw.is_none() || step.is_some();
         // For a sensor on another machine, the lateness is unknown.
         self.felt_s = if is_new { seen.t_s } else { self.felt_s };
+        // The memory decays more slowly than a link can be late, so one punctual reading does not tighten the limit.
         let late_s = if raw.is_none() { LATE_MAX_S } else { seen.t_s - self.felt_s };
         self.late_s = (self.late_s - dt_s * FORGETS_LATE).max(late_s);
         let release = &mut moves.release;
@@ -315,6 +330,8 @@ impl Plausibility {
             fall = release.look(believed_n, now_n, far);
             fall
         });
+        // Travel counts from the newest reading of the sensor: a sensor slower than the loop may show all of it at
+        // once.
         if is_new {
             moves.unfelt_m = 0.0;
         }
@@ -336,6 +353,7 @@ impl Plausibility {
     /// A force of exactly zero is not a repeated number: before an instrument has moved, the network returns zero for
     /// as long as that takes.
     pub fn delivered(&mut self, force_n: &Vector3<f64>, stamp_s: f64) {
+        // NaN makes the detector forget the number, as for a missing channel.
         let reported_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
         let raw = RawReading { channels: reported_n.into(), device_s: None, arrival_s: stamp_s };
         if let Some(step) = self.link.is_new(&raw) {
@@ -346,6 +364,7 @@ impl Plausibility {
 }
 
 /// Number of channels of a force sensor that are forces or torques; the others are accelerations.
+/// The order of `RawReading::of_sensor`: force, torque, acceleration.
 const LOADS: usize = 6;
 
 /// Returns how long a device may have moved since its last reading, s; `None` if its reading is not new. If a device
@@ -368,6 +387,7 @@ fn load_of(channels: &[f64; CHANNELS]) -> SVector<f64, LOADS> {
 
 /// Returns two axes of a frame, which determine the frame.
 fn axes(turn: &UnitQuaternion<f64>) -> SVector<f64, 6> {
+    // The third axis follows from the first two, so a third one would add no information.
     let x = turn * Vector3::x();
     let z = turn * Vector3::z();
     SVector::from([x.x, x.y, x.z, z.x, z.y, z.z])

@@ -10,20 +10,21 @@
 use nalgebra::Vector3;
 
 /// Time for which the tip must have been free before a touch is judged, s. Design choice, tested on the healthy minutes
-/// of `docs/faults.md`.
+/// of `docs/results/faults.md`.
 const FREE_S: f64 = 0.05;
 /// Work that suffices for a judgement, as the travel under the smallest force, m. Design choice, with no false alarm in
-/// 136 healthy minutes (`docs/faults.md`).
+/// 136 healthy minutes (`docs/results/faults.md`).
 const ENOUGH_AT_MIN_M: f64 = 1e-3;
 /// Travel that suffices for a judgement, m.
 const ENOUGH_M: f64 = 0.3e-3;
 /// Fraction of the full work above which the force points along the motion. Design choice, with no false alarm in 136
-/// healthy minutes (`docs/faults.md`).
+/// healthy minutes (`docs/results/faults.md`).
 const ALONG: f64 = 0.7;
 /// A touch that cannot be judged within this time is not judged at all, s. Design choice, with no false alarm in 136
-/// healthy minutes (`docs/faults.md`).
+/// healthy minutes (`docs/results/faults.md`).
 const WITHIN_S: f64 = 0.3;
 /// Time constant against noise, s.
+/// Two periods at 1 kHz: removes the noise of single samples, and stays far below the duration of a touch.
 const SMOOTHING_S: f64 = 0.002;
 /// The touch was caused by the tip if it travelled this far before, m, within about this time, s: faster than 5 mm/s. A
 /// tremor of 0.15 mm per axis moves back and forth by half of that.
@@ -57,9 +58,12 @@ impl TouchMemory {
         let felt_n = self.force_n.norm();
         if felt_n < min_n || !led {
             self.free_s = if led { self.free_s + dt_s } else { 0.0 };
+            // A touch that ends before it is judged leaves nothing: the next one needs its own free time.
             self.touch = None;
             return false;
         }
+        // A force that appears while the tip rests is caused by the object (it moves or is moved), and may point
+        // anywhere.
         if self.free_s >= FREE_S && self.went_m.norm() >= MADE_M {
             self.touch = Some(OpposedTouch::default());
         }
@@ -68,11 +72,14 @@ impl TouchMemory {
         let Some(touch) = &mut self.touch else { return false };
         touch.seconds += dt_s;
         touch.travel_m += travel_m.norm();
+        // A passive object pushes against the travel, so its work on the tip is negative.
         touch.work_j += self.force_n.dot(travel_m);
         touch.max_j += felt_n * travel_m.norm();
         let OpposedTouch { seconds, travel_m, work_j, max_j } = *touch;
         // Both are required, because a strong force reaches the work within the noise of the position.
         if max_j > min_n * ENOUGH_AT_MIN_M && travel_m > ENOUGH_M {
+            // Judged once per touch, so that a later part of a long contact (sliding, springing back) is not
+            // compared.
             self.touch = None;
             return work_j > ALONG * max_j;
         }

@@ -34,6 +34,7 @@ impl RawReadings {
     /// Returns whether every number that a device must have is finite; a force sensor may lack some.
     pub fn is_finite(&self) -> bool {
         self.handle.is_none_or(|raw| raw.is_finite())
+            // A force sensor without torque or accelerometer has NaN there on purpose, so only its time is checked.
             && self.arm.is_none_or(|raw| raw.is_finite())
             && self.sensor.is_none_or(|raw| raw.arrival_s.is_finite())
     }
@@ -57,6 +58,7 @@ impl RawReading<CHANNELS> {
 }
 
 /// Number of readings over which the usual interval is averaged.
+/// 16 intervals: 16 ms at 1 kHz, long enough to average one late poll, short enough to follow a changed rate.
 const AVERAGED: f64 = 16.0;
 /// A longer interval counts as this many nominal ones: the loop was late and missed the readings in between.
 const LONGEST_INTERVALS: f64 = 2.0;
@@ -101,6 +103,7 @@ impl RawPace {
             self.last = Some(now).filter(|_| raw.arrival_s.is_finite());
             return self.last.map_or(RawOutcome::Old, |_| RawOutcome::First);
         };
+        // The loop polls faster than some devices send: the same time is the same reading.
         let arrived_s = raw.arrival_s - arrival_s;
         if arrived_s.is_nan() || arrived_s == 0.0 {
             return RawOutcome::Old;
@@ -114,8 +117,11 @@ impl RawPace {
             self.t_s = 0.0;
             return RawOutcome::First;
         }
+        // The device's own clock may show a longer interval than the arrivals, when several readings arrived
+        // together.
         let reported_s = raw.device_s.zip(device_s).map_or(0.0, |(now_s, before_s)| now_s - before_s);
         let moved_s = arrived_s.max(reported_s.min(arrived_s + HELD_BACK_S));
+        // The first interval has no predecessor, so it is its own average.
         let usual_s = if self.interval_s > 0.0 { self.interval_s } else { arrived_s };
         let counted_s = arrived_s.min(LONGEST_INTERVALS * usual_s);
         self.interval_s = usual_s + (counted_s - usual_s) / AVERAGED;

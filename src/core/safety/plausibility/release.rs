@@ -12,13 +12,13 @@ const GONE_N: f64 = 0.5;
 /// A fall decreases by at least this amount from one sample to the next, N; noise does not.
 const FALLS_N: f64 = 0.1;
 /// A fall with more than this fraction in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz
-/// (`docs/faults.md`); a sensor that steps has 1.
+/// (`docs/results/faults.md`); a sensor that steps has 1.
 const SHARPEST: f64 = 0.65;
 /// A fall begins at most this many samples before the first sample that is too far away. Chosen on the study of faults
-/// (`docs/faults.md`).
+/// (`docs/results/faults.md`).
 const BEFORE: usize = 4;
 /// Maximum number of samples until a fall must have ended. Chosen on the study of faults: with it, every case there
-/// keeps its verdict, and rings that snap away are excused (`docs/faults.md`).
+/// keeps its verdict, and rings that snap away are excused (`docs/results/faults.md`).
 const LONGEST: u32 = 6;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +59,7 @@ impl ReleaseMemory {
             return Fall::No;
         }
         // While a fall is bridged, the accepted force stays the same.
+        // A changed accepted force means that the detector ended the bridge, so this is another fall.
         let going = self.fall.filter(|fall| fall.believed_n == *believed_n);
         let mut fall = going.unwrap_or_else(|| self.begin(believed_n));
         let doing = fall.look(now_n);
@@ -88,10 +89,12 @@ impl FallState {
         // The force may not turn sideways or reverse by more than the force that counts as zero.
         let along_n = if from_n > 0.0 { now_n.dot(&self.from_n) / from_n } else { 0.0 };
         let aside_n = (now_n.norm_squared() - along_n * along_n).max(0.0).sqrt();
+        // Every sample has to continue the fall; one that rises ends it for good.
         self.falls &= aside_n <= GONE_N && along_n >= -GONE_N && (is_gone || falls_n >= FALLS_N);
         self.sharpest_n = self.sharpest_n.max(falls_n);
         self.size_n = size_n;
         self.samples += 1;
+        // A fall in one sample could also be a sensor that lost its supply, so the sharpest step is limited.
         match (self.falls, is_gone) {
             (true, true) if self.sharpest_n <= SHARPEST * (from_n - size_n) => Fall::Over,
             (true, false) if self.samples < LONGEST => Fall::Going,

@@ -50,10 +50,12 @@ impl Repeats {
         if self.clean_since_s.is_nan() {
             self.clean_since_s = t_s;
         }
+        // Only changes count: a device at rest repeats its reading without a fault.
         let changes = self.count == 0 || word != self.before(1);
         if self.lag > 0 && word == self.before(self.lag) {
             self.run += 1;
             self.changes += u32::from(changes);
+        // Not in a coarse device: there the search would find a chance match at almost every reading.
         } else if let Some(lag) = self.skipped(word, changes) {
             self.lag = lag;
             self.run += 1;
@@ -61,6 +63,7 @@ impl Repeats {
         } else if self.is_fine() && self.lag > 0 && self.missed < MISSED_MAX {
             self.missed += 1;
         } else {
+            // Few changes that repeat show that the device has few values; a real repeat has already been reported.
             if self.changes >= BY_CHANCE.max(self.max / 4) && !self.report {
                 self.clean_since_s = t_s;
             }
@@ -69,6 +72,7 @@ impl Repeats {
             self.missed = 0;
             self.changes = self.run;
         }
+        // A ring: the newest reading overwrites the oldest.
         self.words[self.count % KEPT] = word;
         self.count += 1;
         self.report = self.run >= RUN && self.changes >= self.max && t_s - self.clean_since_s >= CLEAN_S;
@@ -91,6 +95,7 @@ impl Repeats {
     }
 
     /// Returns how many readings ago this one last occurred; 0 if it has not.
+    /// Starts at 2: a lag of 1 is a reading at rest, which is judged elsewhere.
     fn find(&self, word: u64) -> usize {
         (2..=self.count.min(KEPT)).find(|ago| self.before(*ago) == word).unwrap_or(0)
     }
@@ -98,6 +103,8 @@ impl Repeats {
 
 /// Hashes all numbers of a reading to one word (FNV-1a over words); one reading in 2^64 collides.
 fn word_of<const N: usize>(channels: &[f64; N]) -> u64 {
+    // Offset basis and prime of FNV-1a (64 bits). The shift carries high bits down, which a multiplication never
+    // does.
     channels.iter().fold(0xcbf2_9ce4_8422_2325, |word, channel| {
         let mixed = (word ^ channel.to_bits()).wrapping_mul(0x0100_0000_01b3);
         mixed ^ mixed >> 29

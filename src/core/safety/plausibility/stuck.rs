@@ -16,7 +16,7 @@ const UNMOVED_S: f64 = 0.1;
 const TREMBLED_S: f64 = 10.0;
 const RESTFUL_S: f64 = 0.05;
 /// Shortest time after which a position counts as stuck, s, and the minimum number of readings that repeat the first
-/// one. Design choice, with no false alarm in 136 healthy minutes (`docs/faults.md`).
+/// one. Design choice, with no false alarm in 136 healthy minutes (`docs/results/faults.md`).
 const STUCK_S: f64 = 0.015;
 const REPEATED: u32 = 2;
 
@@ -41,12 +41,15 @@ impl Stuck {
     /// than `max`.
     pub(super) fn look(&mut self, still: &Vector3<f64>, moving: &Vector3<f64>, max: f64, t_s: f64) {
         let Some(at) = self.at.as_mut().filter(|at| at.still == *still) else {
+            // Exact comparison: a living position changes at least its last bit, so any tolerance would hide a slow
+            // hand.
             let at = StuckState { still: *still, moving: *moving, since_s: t_s, repeats: 0 };
             self.at = Some(at);
             self.is_stuck = false;
             return;
         };
         at.repeats += 1;
+        // Both: the time for slow devices, the number of readings for a loop that polled once after a pause.
         let is_long = t_s - at.since_s > STUCK_S && at.repeats >= REPEATED;
         self.is_stuck = is_long && (moving - at.moving).norm() > max;
     }
@@ -84,6 +87,7 @@ impl HandleStuck {
     /// motionless under a force.
     pub(super) fn look(&mut self, hand_m: &Vector3<f64>, force_n: &Vector3<f64>, guided: bool, t_s: f64) {
         self.by_change.look(hand_m, force_n, STUCK_FORCE_N, t_s);
+        // A handle guided from the screen has no hand, so it may rest under any force.
         let pressed = !guided && force_n.norm() >= UNMOVED_FORCE_N;
         if self.before_m != Some(*hand_m) {
             self.unmoved_since_s = t_s;
@@ -92,6 +96,8 @@ impl HandleStuck {
         self.trembles_since_s = self.trembles_since_s.min(t_s);
         let stood_s = t_s - self.unmoved_since_s;
         let trembled = self.unmoved_since_s - self.trembles_since_s >= TREMBLED_S;
+        // A rest without a force says that this handle can rest (it lies on a table), so trembling has to be seen
+        // again.
         if stood_s > RESTFUL_S && !(trembled && pressed) {
             self.trembles_since_s = t_s;
         }

@@ -5,6 +5,7 @@
 //! late tick causes no loss.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use nima_core::kinematics::ArmModel;
 
 use super::{
     cycle::Cycle,
@@ -111,6 +112,7 @@ impl KinovaDriver {
     /// Creates the driver on open sessions; `feedback` is the first feedback.
     pub(super) fn new(
         settings: &KinovaSettings,
+        model: &ArmModel,
         lines: KinovaLines,
         identity: DeviceIdentity,
         feedback: &KinovaFeedback,
@@ -121,12 +123,12 @@ impl KinovaDriver {
             lines,
             health: Health::opening(),
             identity,
-            guard: Guard::new(settings.joint_limits()),
+            guard: Guard::new(settings.joint_limits(model)),
             mode: KinovaMode::Single,
             cycle: Cycle::default(),
             feedback: *feedback,
             joint_rad: feedback.actuators.map(|a| unwrapped(a.position_deg, 0.0)),
-            command: KinovaCommand { frame_id: 0, actuators: vec![ActuatorCommand::default(); ARM_JOINTS] },
+            command: KinovaCommand { frame_id: 0, actuators: vec![ActuatorCommand::default(); model.joints()] },
             frame_id: 0,
             now_s: 0.0,
             sent_s: None,

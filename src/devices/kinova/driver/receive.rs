@@ -25,6 +25,7 @@ const READS: usize = 4;
 /// Maximum plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings. About seven
 /// times the fastest joint of a Gen3 (1.4 rad/s).
 const JUMP_RAD_S: f64 = 10.0;
+// Noise and a lost reading at a moderate speed stay below it.
 const JUMP_RAD: f64 = 0.2;
 
 impl KinovaDriver {
@@ -40,8 +41,9 @@ impl KinovaDriver {
                     break;
                 }
             };
+            let joints = self.command.actuators.len();
             let report = KinovaFrame::decode(&self.lines.datagram[..count]).map(|frame| {
-                let feedback = KinovaFeedback::decode(frame.payload).ok().filter(|report| report.count == ARM_JOINTS);
+                let feedback = KinovaFeedback::decode(frame.payload).ok().filter(|report| report.count == joints);
                 (frame.header, feedback)
             });
             let good = match report {

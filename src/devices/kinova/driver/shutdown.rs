@@ -21,6 +21,7 @@ use crate::{
 const LEAVE: Duration = Duration::from_millis(800);
 /// Short, because the arm's own watchdog ends a session that is not closed.
 const ANSWER: Duration = Duration::from_millis(200);
+// 1 kHz, the rate of the arm's cyclic connection.
 const TICK: Duration = Duration::from_millis(1);
 
 impl KinovaDriver {

@@ -44,7 +44,7 @@ impl Fixture {
         scene.person = flaw.map(|flaw| PersonModel { flaw: Some(flaw) });
         let hand = HandFrame::of(&rig.teleoperation.mapping());
         let world = of_side(side, &set, &scene, hand, Flaws::default()).unwrap();
-        let arm = Arm::new(&set.mount).unwrap();
+        let arm = set.kinematics().unwrap();
         Self { world, arm, set, hand, t_s: 0.0, frame_s: 0.0, c_from_m: None }
     }
 

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use nima_core::{
-    kinematics::{Arm, InstrumentPose, JOINTS, Joints, LIMIT_RAD, SPEED_RAD_S, limit_margin_rad},
+    kinematics::{Arm, ArmModel, InstrumentPose, JOINTS, Joints},
     noise::Noise,
 };
 
@@ -54,15 +54,18 @@ type GuidingMiss = SVector<f64, CONDITIONS>;
 
 impl Guide {
     /// `comfort_rad` are the joint angles that a person prefers.
-    pub(super) const fn new(arm: Arm, comfort_rad: Joints) -> Self {
-        Self { arm, comfort_rad }
+    pub(super) const fn new(arm: &Arm, comfort_rad: Joints) -> Self {
+        Self { arm: *arm, comfort_rad }
     }
 
     /// Guides the joints towards this hold for `dt_s`, limited by their speed; returns the remaining error, m.
     pub(super) fn step(&self, joint_rad: &mut Joints, hold: &ToolHold, dt_s: f64) -> f64 {
         let (step_rad, miss_m) = self.towards(joint_rad, hold, COMFORT_PER_S * dt_s);
-        let fraction =
-            step_rad.iter().zip(SPEED_RAD_S).map(|(step, max)| step.abs() / (max * dt_s)).fold(1.0, f64::max);
+        let fraction = step_rad
+            .iter()
+            .zip(self.arm.model().speed_rad_s())
+            .map(|(step, max)| step.abs() / (max * dt_s))
+            .fold(1.0, f64::max);
         *joint_rad += step_rad / fraction;
         miss_m
     }
@@ -70,9 +73,11 @@ impl Guide {
     /// Returns the joint angles for this hold that are closest to `from_rad`; `None` if the arm cannot reach it.
     pub(super) fn find(&self, from_rad: &Joints, hold: &ToolHold) -> Option<Joints> {
         let mut noise = Noise::new(0x6a_1d);
-        let mut random = || Joints::from_fn(|joint, _| (2.0 * noise.uniform() - 1.0) * LIMIT_RAD[joint].min(PI));
+        let mut random = || self.arm.model().within_ranges(|| 2.0 * noise.uniform() - 1.0);
         let starts = [*from_rad, self.comfort_rad].into_iter().chain((0..STARTS).map(|_| random()));
-        let found = starts.filter_map(|start| self.converged(start, hold)).map(|found| nearest_turn(from_rad, &found));
+        let found = starts
+            .filter_map(|start| self.converged(start, hold))
+            .map(|found| nearest_turn(self.arm.model(), from_rad, &found));
         found.min_by(|a, b| (a - from_rad).amax().total_cmp(&(b - from_rad).amax()))
     }
 
@@ -86,7 +91,7 @@ impl Guide {
         for _ in 0..STEPS {
             let (step_rad, miss_m) = self.towards(&joint_rad, hold, 0.0);
             if miss_m < CLOSE_M {
-                return (limit_margin_rad(&joint_rad) >= KEEP_OFF_RAD).then_some(joint_rad);
+                return (self.arm.model().limit_margin_rad(&joint_rad) >= KEEP_OFF_RAD).then_some(joint_rad);
             }
             joint_rad += step_rad * (LONGEST_RAD / step_rad.amax().max(LONGEST_RAD));
         }
@@ -97,16 +102,17 @@ impl Guide {
     /// and the error.
     fn towards(&self, joint_rad: &Joints, hold: &ToolHold, comfort: f64) -> (Joints, f64) {
         let (rows, miss) = missing(&self.arm.pose(joint_rad), hold);
-        let relaxed = nearest_turn(joint_rad, &self.comfort_rad) - joint_rad;
+        let relaxed = nearest_turn(self.arm.model(), joint_rad, &self.comfort_rad) - joint_rad;
+        let model = self.arm.model();
         let mut free = [true; JOINTS];
         let mut step_rad = Joints::zeros();
-        for _ in 0..JOINTS {
+        for _ in 0..model.joints() {
             step_rad = solve(&rows, &miss, &(relaxed * comfort), free);
             let mut stopped = false;
-            for joint in 0..JOINTS {
-                let now = joint_rad[joint].abs();
-                let next = (joint_rad[joint] + step_rad[joint]).abs();
-                if free[joint] && next > LIMIT_RAD[joint] - KEEP_OFF_RAD && next > now {
+            for joint in 0..model.joints() {
+                let now_rad = model.margin_rad(joint, joint_rad[joint]);
+                let next_rad = model.margin_rad(joint, joint_rad[joint] + step_rad[joint]);
+                if free[joint] && next_rad < KEEP_OFF_RAD && next_rad < now_rad {
                     free[joint] = false;
                     stopped = true;
                 }
@@ -180,10 +186,14 @@ fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Returns the same pose, with each continuous joint in the turn nearest to `from_rad`.
-pub(super) fn nearest_turn(from_rad: &Joints, joint_rad: &Joints) -> Joints {
+pub(super) fn nearest_turn(model: &ArmModel, from_rad: &Joints, joint_rad: &Joints) -> Joints {
     Joints::from_fn(|joint, _| {
         let from = from_rad[joint];
         let to = joint_rad[joint];
-        if LIMIT_RAD[joint].is_finite() { to } else { to - TAU * ((to - from) / TAU).round() }
+        if model.range_rad(joint).iter().all(|rad| rad.is_finite()) {
+            to
+        } else {
+            to - TAU * ((to - from) / TAU).round()
+        }
     })
 }

@@ -37,7 +37,7 @@ use std::{
 };
 
 use nalgebra::UnitQuaternion;
-use nima_core::kinematics::{Arm, ArmError, MotionMapping, Rcm, RcmError, ReadyError, find};
+use nima_core::kinematics::{ArmError, MotionMapping, Rcm, RcmError, ReadyError, find};
 use nima_devices::DeviceError;
 use nima_machine::{
     config::ConfigError,
@@ -276,9 +276,9 @@ fn of_side(
 ) -> Result<SideWorld, EmulatedRigError> {
     let device = || format!("{} arm", side.word());
     let scene = scene::of_side(scene, side, set)?;
-    let arm = Arm::new(&set.mount).map_err(|source| EmulatedRigError::Mount { device: device(), source })?;
+    let arm = set.kinematics().map_err(|source| EmulatedRigError::Mount { device: device(), source })?;
     let rcm = Rcm::new(&set.rcm).map_err(|source| EmulatedRigError::Trocar { device: device(), source })?;
     let ready = find(&arm, &rcm, &Hand::new(&scene).position_m());
     let ready = ready.map_err(|source| EmulatedRigError::Ready { device: device(), source })?;
-    Ok(SideWorld::new(&scene, set, arm, &ready.joint_rad, hand, flaws))
+    Ok(SideWorld::new(&scene, set, &arm, &ready.joint_rad, hand, flaws))
 }

@@ -101,9 +101,11 @@ fn arm(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
     };
     let kinova::KinovaSettings { host, tcp_port, udp_port, serial_number, user, password, .. } = chosen.clone();
     addresses::local(&name, &host)?;
+    let model = set.model().map_err(|source| EmulatedRigError::Mount { device: name.clone(), source })?;
+    let joints = model.joints() as u32;
     let usual = emulators::kinova::EmulatedKinova::default();
     let serial = serial_number.unwrap_or_else(|| format!("EMULATED-{}", 1 + side.index()));
-    let emulated = emulators::kinova::EmulatedKinova { user, password, serial, tcp_port, udp_port, ..usual };
+    let emulated = emulators::kinova::EmulatedKinova { user, password, serial, joints, tcp_port, udp_port, ..usual };
     let world = shared.clone();
     let body = move |_: f64, asked: &_| world.with(|side, now_s| side.ask(now_s, asked));
     served(name, emulated.with(body))

@@ -71,7 +71,7 @@ pub(super) struct SideWorld {
     hand: HandFrame,
     start_m: Vector3<f64>,
     imu_from_s1: UnitQuaternion<f64>,
-    technician: SideTechnician,
+    technician: Box<SideTechnician>,
     camera: CameraMount,
     flawed: FlawedSide,
     world_from_s1: UnitQuaternion<f64>,
@@ -91,7 +91,7 @@ impl SideWorld {
     pub(super) fn new(
         scene: &Scene,
         set: &ArmSet,
-        arm: Arm,
+        arm: &Arm,
         start_rad: &Joints,
         hand: HandFrame,
         flaws: Flaws,
@@ -103,7 +103,7 @@ impl SideWorld {
         let start_m = world.hand().position_m();
         let mut side = Self {
             world,
-            arm,
+            arm: *arm,
             omega: scene.follower.map(|follower| std::f64::consts::TAU * follower.bandwidth_hz),
             body: BodyState { joint_rad: (*start_rad).into(), ..BodyState::default() },
             asked: BodyCommand::Rest,
@@ -111,7 +111,7 @@ impl SideWorld {
             hand,
             start_m,
             imu_from_s1: imu_deg.map_or_else(UnitQuaternion::identity, |deg| from_roll_pitch_yaw_deg(&deg).inverse()),
-            technician: SideTechnician::new(arm, *start_rad, scene, world_from_view(&hand)),
+            technician: Box::new(SideTechnician::new(arm, *start_rad, scene, world_from_view(&hand))),
             camera: CameraMount::new(scene, set),
             flawed: FlawedSide::new(flaws, (*start_rad).into()),
             world_from_s1: pose.orientation(),

@@ -91,9 +91,9 @@ impl Carry {
 impl SideTechnician {
     /// Creates a technician away from the arm of a scene adapted to its side. `ready_rad` are the joint angles with the
     /// instrument in the trocar.
-    pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
+    pub(super) fn new(arm: &Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
         Self {
-            arm,
+            arm: *arm,
             guide: Guide::new(arm, ready_rad),
             ready_rad,
             config: scene.person.unwrap_or_default(),
@@ -215,7 +215,7 @@ impl SideTechnician {
 
     /// Returns the joint angles at the start of the current task.
     fn beginning(&self, from_rad: &Joints) -> Joints {
-        let ready_rad = nearest_turn(from_rad, &self.ready_rad);
+        let ready_rad = nearest_turn(self.arm.model(), from_rad, &self.ready_rad);
         let down = Vector3::new(0.0, 0.0, 1.0);
         let hold = match self.task {
             PersonTask::Surgery | PersonTask::TipForce | PersonTask::Trocar => return ready_rad,

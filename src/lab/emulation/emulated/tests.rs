@@ -49,7 +49,7 @@ impl Fixture {
 
     fn with_flaws(side: Side, scene: &Scene, set: ArmSet, flaws: Flaws) -> Self {
         let world = of_side(side, &set, scene, HandFrame::default(), flaws).unwrap();
-        let arm = Arm::new(&set.mount).unwrap();
+        let arm = set.kinematics().unwrap();
         Self { world, arm, set, asked: BodyCommand::Rest, t_s: 0.0, frame_s: 0.0, m_from_c: None }
     }
 

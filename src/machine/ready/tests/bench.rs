@@ -7,7 +7,7 @@ use nima_core::{
         gravity::{GravityModel, GravityParameters, GravitySource},
     },
     frames::{GRAVITY_M_S2, Wrench, WristSample},
-    kinematics::{self, HandPose},
+    kinematics::HandPose,
     noise::Noise,
 };
 use nima_devices::Health;
@@ -228,7 +228,7 @@ impl Fixture {
         let force_n = weight_n + noise_n + self.flaws.bias_n + self.push_n;
         let wrench = Wrench { force_n, torque_nm: Vector3::zeros() };
         let set = self.session.subject().rig.devices.as_ref().unwrap().right.clone().unwrap();
-        let arm = kinematics::Arm::new(&set.mount).unwrap();
+        let arm = set.kinematics().unwrap();
         let down = set.rcm.inward.normalize();
         let trocar_m =
             set.rcm.trocar_m + self.flaws.trocar_m + if self.is_out { Vector3::x() * 0.1 } else { Vector3::zeros() };

@@ -57,11 +57,12 @@ impl SideReadings {
     /// [`RigError`] if mount or trocar are invalid.
     pub fn new(side: Side, set: &ArmSet, period_s: f64, at_wrist: bool) -> Result<Self, RigError> {
         let word = side.word();
+        let mount = set.kinematics().map_err(|source| RigError::Mount { side: word, source })?;
         Ok(Self {
-            mount: Arm::new(&set.mount).map_err(|source| RigError::Mount { side: word, source })?,
+            mount,
             rcm: Rcm::new(&set.rcm).map_err(|source| RigError::Rcm { side: word, source })?,
             hand_eye: set.hand_eye().map(|[s1_from_m, base_from_c]| ExpectedMarker { s1_from_m, base_from_c }),
-            limits: set.arm.joint_limits(),
+            limits: set.arm.joint_limits(mount.model()),
             period_s,
             s1_from_m: set.s1_from_m_deg.as_ref().map(from_roll_pitch_yaw_deg),
             at_wrist,
@@ -86,6 +87,7 @@ impl SideReadings {
 
     /// Stores a new reading of the force sensor; an unusable one invalidates the previous reading.
     pub fn take_force(&mut self, reading: TimedReading<ForceReading>) {
+        // A reading that its own sensor marks as invalid counts as missing.
         self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
     }
 
@@ -117,11 +119,13 @@ impl SideReadings {
         shared: &SharedReadings,
     ) -> Option<Inputs> {
         let led = match delivering.handle {
+            // A missing handle ends the sample (`?`): hand and tip are only used together.
             Some(is_there) => Some(self.hand.filter(|hand| is_there && now_s - hand.arrival_s <= OLDEST_S)?),
             None => None,
         };
         let inputs = match delivering.follower {
             Some(is_there) => self.follower_inputs(now_s, jaws, shared).filter(|_| is_there)?,
+            // A rig without a follower's half has no drives here that could be off.
             None => Inputs { powered: true, ..Inputs::NOTHING },
         };
         let Some(hand) = led else { return Some(inputs) };
@@ -133,6 +137,7 @@ impl SideReadings {
             gripper_rad,
             frames: FrameSample { leader_from_handle, ..inputs.frames },
             powered: inputs.powered && self.force_is_on,
+            // The older of the two ages: a force is as old as its oldest input.
             age_s: inputs.age_s.max(now_s - hand.arrival_s),
             raw: RawReadings { handle: Some(raw(&hand, position_m.into())), ..inputs.raw },
             ..inputs
@@ -149,6 +154,7 @@ impl SideReadings {
         let force = self.force?;
         let pose = self.pose.as_ref()?;
         let age_s = [joints.arrival_s, force.arrival_s].map(|at_s| now_s - at_s).into_iter().fold(0.0, f64::max);
+        // The joints and the force have to be of the same moment, so the older one decides.
         if age_s > OLDEST_S {
             return None;
         }
@@ -177,6 +183,7 @@ impl SideReadings {
 
     fn view(&self, world_from_s1: &UnitQuaternion<f64>, shared: &SharedReadings) -> ViewOrientation {
         let ViewOrientation::Seen(c_from_view) = shared.c_from_view else { return shared.c_from_view };
+        // Without the marker on the instrument the camera's orientation is unknown.
         let Some((s1_from_m, m_from_c)) = self.s1_from_m.zip(shared.m_from_c()) else { return ViewOrientation::Unseen };
         let world_from_view = world_from_tracked_view(&(world_from_s1 * s1_from_m), &m_from_c, &c_from_view);
         match self.world_from_c().zip(shared.c_from_n) {

@@ -86,7 +86,9 @@ impl ArmPair {
         });
         let handle = handle.transpose()?;
         let follower = ends.have_follower().then(|| {
-            let arm = start(RigPart::Arm(side), set.arm.opener(), known, roster, move |arm| arm.attach(&of_arm))?;
+            let arm = start(RigPart::Arm(side), set.arm.opener(measured.mount.model()), known, roster, move |arm| {
+                arm.attach(&of_arm);
+            })?;
             let sensor = start(RigPart::Sensor(side), set.sensor.opener(), known, roster, |_| ())?;
             Ok::<_, std::io::Error>(FollowerSlots { arm, sensor })
         });
@@ -145,6 +147,7 @@ impl ArmPair {
         if let Some(slot) = &mut self.handle {
             // The device reports only changes, so the last state is kept while it is connected.
             let changed = slot.device().and_then(|handle| handle.force_change());
+            // A handle that was lost has no force, whatever it reported last.
             self.measured.force_is_on = changed.unwrap_or(self.measured.force_is_on && is_there(slot));
         }
         // Only while the drives are off, because the reason concerns the next engagement.
@@ -221,6 +224,7 @@ impl ArmPair {
     /// trocar.
     fn lead(&mut self, tip_command_m: Option<Vector3<f64>>) {
         let arm = self.follower.as_mut().and_then(|slots| slots.arm.device());
+        // Without an arm or its angles no plan is possible; the next one starts from a measurement.
         let (Some(arm), Some(joints)) = (arm, self.measured.joints) else {
             self.inverse = None;
             return;

@@ -1,4 +1,4 @@
-use nima_core::kinematics::JointLimits;
+use nima_core::kinematics::{ArmModel, JointLimits};
 use nima_devices::{
     ClearFaults, DeviceError, Follower,
     discovery::{DataTiming, DeviceProbe, Probe, probes},
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize, Serializer};
 use super::Opener;
 use crate::rig::places::{NamedPlace, Place};
 
-/// The arm of a rig file. Every make has the joints of a Gen3.
+/// The arm of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FollowerSettings {
-    /// `make = "kinova"`, the default: Gen3 with seven joints.
+    /// `make = "kinova"`, the default: a Gen3.
     Kinova(kinova::KinovaSettings),
     /// `make = "simulated"`: no hardware.
     Simulated(simulated_arm::SimulatedArmSettings),
@@ -89,14 +89,14 @@ impl FollowerSettings {
         }
     }
 
-    /// Checks every setting.
+    /// Checks every setting of an arm of this model.
     ///
     /// # Errors
     /// [`DeviceError::Setting`] for the first invalid one.
-    pub fn check(&self) -> Result<(), DeviceError> {
+    pub fn check(&self, model: &ArmModel) -> Result<(), DeviceError> {
         match self {
             Self::Kinova(settings) => settings.check(),
-            Self::Simulated(settings) => settings.check(),
+            Self::Simulated(settings) => settings.check(model),
             Self::External(settings) => settings.check(external::ExternalKind::Arm),
         }
     }
@@ -112,46 +112,48 @@ impl FollowerSettings {
     }
 
     /// Returns the limits of position, speed and acceleration of the joints.
-    pub(in crate::rig) fn joint_limits(&self) -> JointLimits {
+    pub(in crate::rig) fn joint_limits(&self, model: &ArmModel) -> JointLimits {
         match self {
-            Self::Kinova(settings) => settings.joint_limits(),
-            Self::Simulated(settings) => settings.joint_limits(),
-            Self::External(settings) => settings.joint_limits(),
+            Self::Kinova(settings) => settings.joint_limits(model),
+            Self::Simulated(settings) => settings.joint_limits(model),
+            Self::External(settings) => settings.joint_limits(model),
         }
     }
 
-    pub(in crate::rig) fn opener(&self) -> Opener<Box<dyn Follower>> {
+    pub(in crate::rig) fn opener(&self, model: &ArmModel) -> Opener<Box<dyn Follower>> {
+        let model = *model;
         match self.clone() {
             Self::Kinova(settings) => {
                 let clearing = kinova::FaultClearing::default();
                 let of_opening = clearing.clone();
                 Opener {
                     driver: format!("Kinova Gen3, {}", settings.host),
-                    open: Box::new(move || Ok(Box::new(kinova::open_clearing(&settings, &of_opening)?))),
+                    open: Box::new(move || Ok(Box::new(kinova::open_clearing(&settings, &model, &of_opening)?))),
                     clear_faults: Some(ClearFaults::by(move || clearing.command())),
                 }
             }
             Self::Simulated(settings) => Opener {
                 driver: "simulated arm".to_owned(),
-                open: Box::new(move || Ok(Box::new(simulated_arm::SimulatedArmDriver::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(simulated_arm::SimulatedArmDriver::open(&settings, &model)?))),
                 clear_faults: None,
             },
             Self::External(settings) => Opener {
                 driver: format!("external arm, {}", settings.place()),
-                open: Box::new(move || Ok(Box::new(external::ExternalArm::open(&settings)?))),
+                open: Box::new(move || Ok(Box::new(external::ExternalArm::open(&settings, &model)?))),
                 clear_faults: None,
             },
         }
     }
 
-    pub(in crate::rig) fn probe(&self, name: &str) -> Box<dyn Probe> {
+    pub(in crate::rig) fn probe(&self, name: &str, model: &ArmModel) -> Box<dyn Probe> {
+        let model = *model;
         match self.clone() {
-            Self::Kinova(settings) => probes::arm(name, settings),
+            Self::Kinova(settings) => probes::arm(name, settings, model),
             Self::Simulated(settings) => {
-                let open = move || simulated_arm::SimulatedArmDriver::open(&settings);
+                let open = move || simulated_arm::SimulatedArmDriver::open(&settings, &model);
                 Box::new(DeviceProbe::new(name, "this program".to_owned(), DataTiming::Always, open))
             }
-            Self::External(settings) => probes::external(name, external::ExternalKind::Arm, settings),
+            Self::External(settings) => probes::external_arm(name, settings, model),
         }
     }
 }

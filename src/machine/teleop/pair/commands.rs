@@ -25,12 +25,15 @@ impl<L: Link> Pair<L> {
             Command::SetMode(mode) => return self.set_mode(mode),
             Command::Compare(compares) => {
                 self.leader.modes.compares = compares;
+                // The set of computed modes follows from mode and comparison, so it is derived again after each
+                // change.
                 self.compute();
             }
             Command::SetGain(gain) => self.leader.gates.chain.set_ordinary_gain(within(&GAIN, gain)?),
             Command::SetGainAboveOne(gain) => {
                 self.leader.gates.chain.set_gain_above_one(within(&GAIN_ABOVE_ONE, gain)?);
             }
+            // The link to another machine has its real delay.
             Command::SetDelay(_) if self.link.is_far() => return Err(Refusal::DelayIsMeasured),
             Command::SetDelay(delay_s) => self.set_delay(within(&DELAY_S, delay_s)?),
             Command::SetDeadBand(speed_m_s) => {
@@ -43,6 +46,7 @@ impl<L: Link> Pair<L> {
             }
             Command::Prompt(_, prompt) => return self.prompt(prompt),
             Command::Guide(_, guide_m) => {
+                // Nothing may move while a stop or a fault is latched.
                 self.is_not_latched()?;
                 let coordinates_m = guide_m.iter().flat_map(|position_m| position_m.iter());
                 all_within(-GUIDE_MAX_M..=GUIDE_MAX_M, coordinates_m)?;
@@ -98,6 +102,7 @@ impl<L: Link> Pair<L> {
         if !prompt.is_finite() {
             return Err(Refusal::OutOfRange);
         }
+        // A prompt in an engaged arm would ask a person to move an arm that is under control.
         if self.state() != LoopState::Idle {
             return Err(Refusal::State(self.state()));
         }
@@ -122,6 +127,7 @@ impl<L: Link> Pair<L> {
 
     /// Rounds the delay to a whole number of samples; the screen shows the rounded delay.
     pub(super) fn set_delay(&mut self, delay_s: f64) {
+        // Rounded to whole ticks once, so that link, identifier and renderer use the same delay.
         let delay_s = self.settings.delay_ticks(delay_s) as f64 / self.settings.rate_hz;
         self.link.set_delay(delay_s);
         self.follower.identifier.set_delay(delay_s);
@@ -134,6 +140,7 @@ impl<L: Link> Pair<L> {
             self.leader.renderer.set_delay(delay_s);
         }
         // The packets of a local identification are suppressed in the same way.
+        // A test of the link's watchdog suppresses reports as a broken cable would.
         let is_withheld = self.withholds(Watchdog::Link);
         self.link.receive_identified((!is_withheld).then_some(identified))
     }
@@ -148,11 +155,13 @@ impl<L: Link> Pair<L> {
 
     /// Releases a stop or a fault here, otherwise the stop of the other machine, which follows the count.
     fn release(&mut self, t_s: f64) -> Result<(), Refusal> {
+        // This machine is fine: only the other one has to be released.
         let is_of_other_machine = self.link.far_stop().is_some() && !self.state().is_latched();
         if !is_of_other_machine {
             self.may_release(t_s)?;
             self.ask(InterlockRequest::Release, t_s)?;
         }
+        // A count, so that a lost or repeated message neither loses nor repeats a release.
         self.releases = self.releases.wrapping_add(1);
         Ok(())
     }
@@ -166,6 +175,7 @@ impl<L: Link> Pair<L> {
 
     /// Raises a fault that matters only while drives are on or its watchdog is tested.
     pub(in crate::teleop) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
+        // Without drives a fault harms nothing, and would only have to be released again.
         if self.state().permits().drives || self.is_tested(fault) {
             self.fail(fault, t_s);
         }
@@ -176,10 +186,12 @@ impl<L: Link> Pair<L> {
         let StateChange { from, to, why } = change;
         self.note(Event::StateChanged { t_s, side: self.side, from, to, why });
         self.leader.rest();
+        // A test ends with the state that it was started in.
         self.watchdog_test = None;
         if !to.permits().drives || !from.permits().drives {
             self.screen.prompt = Prompt::Rest;
         }
+        // A latched pair forgets every request of the screen: nothing resumes by itself after the release.
         if to.is_latched() {
             self.screen.guide_m = None;
             self.screen.grip_rad = None;

@@ -104,6 +104,7 @@ impl<L: Link> Pair<L> {
             watchdog_test: None,
             events: [None; EVENTS_PER_TICK_MAX],
         };
+        // After construction, because both set parts that have to agree: link, identifier and renderer.
         this.set_delay(rig.delay_s);
         this.compute();
         Ok(this)
@@ -164,6 +165,8 @@ impl<L: Link> Pair<L> {
 
     fn note(&mut self, event: Event) {
         if let Some(free) = self.events.iter_mut().find(|slot| slot.is_none()) {
+            // More events than places are impossible (`EVENTS_PER_TICK_MAX`); one that did not fit would be lost, not
+            // awaited.
             *free = Some(event);
         }
     }
@@ -177,7 +180,9 @@ impl<L: Link> Pair<L> {
     pub(super) fn exchange_force_path(&mut self, path: &mut ForcePath) -> bool {
         let rests = !self.state().permits().drives;
         if rests {
+            // A swap instead of a copy: the old path goes back to the caller and is freed outside the loop.
             std::mem::swap(&mut self.follower.force_path, path);
+            // Another calibration changes the force, which is not a jump of the sensor.
             self.plausibility.force_is_new();
         }
         rests

@@ -12,6 +12,7 @@ use crate::{
 impl<L: Link> Pair<L> {
     /// Returns the current objection to engaging; the interlock checks the state.
     pub(super) fn may_engage(&self) -> Result<(), Refusal> {
+        // Neither idle nor after a short stall: the interlock itself refuses, with the state as its reason.
         if self.state() != LoopState::Idle && !self.has_short_stall() {
             return Ok(());
         }
@@ -25,6 +26,7 @@ impl<L: Link> Pair<L> {
         if let Some(what) = self.plausibility.doubt() {
             return Err(Refusal::Implausible(what));
         }
+        // A stop at the other machine would end the engagement in its first tick.
         if let Some(fault) = self.far_fault() {
             return Err(Refusal::StillPresent(fault));
         }
@@ -51,9 +53,11 @@ impl<L: Link> Pair<L> {
 
     /// Refuses the release of a stop or a fault while a cause of a fault is present.
     pub(super) fn may_release(&self, t_s: f64) -> Result<(), Refusal> {
+        // Nothing to release is not an error: the command goes to both arms.
         if !self.state().is_latched() {
             return Ok(());
         }
+        // A fault that is still present would return at once, so the release is refused with its name.
         if self.samples.are_silent(t_s) {
             return Err(Refusal::StillPresent(Fault::SourceSilent));
         }
@@ -62,6 +66,7 @@ impl<L: Link> Pair<L> {
 
     /// Returns the condition for which an engagement in progress is waiting.
     pub(super) fn waits_for(&self, seen: InterlockInput, inputs: Option<&Inputs>) -> Refusal {
+        // The order of the checks in `step_interlock`, so that the operator hears the first one that is missing.
         if !seen.powered {
             Refusal::DrivesOff
         } else if inputs.is_none_or(|inputs| inputs.view == ViewOrientation::Unseen) {

@@ -23,6 +23,7 @@ use crate::{
 /// Time of consecutive missed periods that is a fault while drives are on, s.
 const STALLED_AFTER_S: f64 = 0.050;
 /// If a tip moved more than this within a tick, it is not at rest, and the pair is not engaged, m.
+/// A tip at rest shows its encoder noise; 0.2 mm in a tick of 1 ms would be 0.2 m/s.
 const AT_REST_M: f64 = 0.2e-3;
 
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +53,7 @@ impl<L: Link> Pair<L> {
         }
         self.check_clock(timing);
         self.end_late_test(now_s);
+        // A sample with a number that is not finite counts as no sample.
         let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
         let moved_m = self.samples.moved_m(inputs.as_ref());
 
@@ -64,11 +66,13 @@ impl<L: Link> Pair<L> {
 
         // The permissions of the interlock.
         self.raise_faults(inputs.as_ref(), timing);
+        // After the faults, so that a fault of this tick prevents an engagement in it.
         self.step_interlock(inputs.as_ref(), moved_m, now_s);
         self.drop_old_force(now_s);
 
         // The leader's half: hand to command, packets and motion to a force, gates, handle. Without a new sample the
         // link keeps delivering packets in transit; these grow older, and the age gate removes the force.
+        // Outputs are computed in every tick, also without a sample: the gates then let the force fade.
         let seen = self.samples.last.unwrap_or(Inputs::NOTHING);
         let lead = self.leader.lead(&seen);
         let rendered = self.leader.render(&seen, &lead, &mut self.link, timing);
@@ -90,6 +94,7 @@ impl<L: Link> Pair<L> {
             self.fail_if_driven(Fault::ClockJumped, timing.now_s);
         }
         if passed == TickSpacing::Backwards {
+            // Everything that is ordered by time starts again; the settings stay.
             self.follower.identifier.reset();
             self.leader.renderer.reset();
             self.link.clear();
@@ -121,6 +126,7 @@ impl<L: Link> Pair<L> {
             self.follower.force.tip_n = admitted.force_n;
         }
         self.leader.gates.move_hand(inputs.hand_s(now_s), inputs.hand.position_m);
+        // Packets without a usable force would be rendered as a contact that ended.
         // A sample with an unusable force counts as missing: no packet is sent for it.
         let sends = is_usable && !self.withholds(Watchdog::Link);
         self.link.identify(&mut self.follower, &inputs.tip_m, timing, sends);
@@ -140,11 +146,13 @@ impl<L: Link> Pair<L> {
             force_n: if force.source.is_usable() { force.tip_n } else { Vector3::zeros() },
             min_n: force.source.min_n(),
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
+            // With a delay between command and tip, the command to which this tip responds is an older one.
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
             command_m: self.leader.command_behind_m(self.link.behind(silent_s), silent_s),
             hand_force_n: self.leader.hand_force_n,
             guided: self.screen.guide_m.is_some(),
+            // Only one half is remote, and only its data can be silent.
             tip_silent_s: if is_far { silent_s } else { 0.0 },
             hand_silent_s: if is_far { 0.0 } else { silent_s },
         }
@@ -153,6 +161,7 @@ impl<L: Link> Pair<L> {
     fn raise_faults(&mut self, inputs: Option<&Inputs>, timing: &Timing) {
         let now_s = timing.now_s;
         if timing.missed_now as f64 / self.settings.rate_hz > STALLED_AFTER_S {
+            // `fail_if_driven` also covers `Ready`: an arm that starts with a stalled loop stops again.
             self.fail_if_driven(Fault::LoopStalled { periods: timing.missed_now }, now_s);
         }
         // The order is the order of causes: only the first fault is reported, and the later ones follow from it.
@@ -207,6 +216,7 @@ impl<L: Link> Pair<L> {
     /// Called after the fault for the silence, which is the cause.
     fn drop_old_force(&mut self, now_s: f64) {
         if !self.samples.are_silent(now_s) {
+            // A force that is still fresh is kept between samples: some rigs are slower than the loop.
             return;
         }
         self.follower.force = NO_FORCE;
@@ -218,6 +228,7 @@ impl<L: Link> Pair<L> {
     fn receive(&mut self, seen: &Inputs, now_s: f64) -> Delivery {
         let delay_s = self.link.delay_s();
         // Until the first packet arrives, the delay line is still filling.
+        // Infinite age closes the gates.
         let Some(parcel) = self.link.receive(now_s) else {
             self.link.note_age(None);
             return Delivery { age_s: f64::INFINITY, delayed_n: UNKNOWN_N };
@@ -226,6 +237,7 @@ impl<L: Link> Pair<L> {
         // Over a network a packet may be younger than its delay; its force still ends when the connection does. `max`,
         // not a sum: the silence is already contained in the age of the newest packet.
         let age_s = (now_s - parcel.t_s - delay_s + seen.age_s).max(seen.silent_s);
+        // From this age on the gates pass nothing, so the screen shows an unknown force as well.
         let is_known = parcel.fresh && age_s < self.leader.gates.chain.settings().zero_after_s;
         let delayed_n = if is_known { parcel.force_n } else { UNKNOWN_N };
         self.link.note_age(Some(age_s));
@@ -246,6 +258,7 @@ impl<L: Link> Pair<L> {
         delivery: &Delivery,
         now_s: f64,
     ) -> HandForce {
+        // Both: the interlock permits the coupling, and the force at this moment has to be known.
         let permitted = self.state().permits().coupled && self.follower.force.source.is_usable();
         let force_n = self.leader.modes.force_n(rendered);
         // After a change of mode both modes are computed until the new one is ready; only then is the old one no longer
@@ -267,6 +280,7 @@ impl<L: Link> Pair<L> {
             permitted,
         });
         let gripper_n = self.leader.gates.grip(inputs, now_s, age_s, permitted);
+        // In the frame of the device; not scaled, because the operator's gain has been applied.
         self.leader.hand_force_n = mapping.force_to_hand(&rendered_n);
         HandForce { rendered_n, gates, gripper_n }
     }
@@ -275,6 +289,7 @@ impl<L: Link> Pair<L> {
     /// that machine evaluates the modes.
     fn judge_modes(&mut self, came: bool, rendered: &RenderedForces) {
         let force = &self.follower.force;
+        // An error against an estimated force would only measure the estimate.
         if came && force.source.is_known() && !self.link.is_far() {
             self.accuracy.add(rendered, self.follower.identifier.report().modes, &force.tip_n);
         }
@@ -284,6 +299,7 @@ impl<L: Link> Pair<L> {
         Outputs {
             drives: self.state().permits().drives,
             tip_command_m: lead.tip_m,
+            // Without a measured wrist there is no starting point for a command.
             world_from_jaws: lead.tip_m.and(seen.world_from_jaws).map(|_| lead.target.world_from_jaws),
             hand_force_n: self.leader.hand_force_n,
             gripper_n: felt.gripper_n,
@@ -314,6 +330,7 @@ impl<L: Link> Pair<L> {
             mode: self.leader.modes.mode,
             delay_s: self.link.delay_s(),
             positions: TickPositions {
+                // At rest the leader's motion is the tip's own, so that no difference is shown.
                 leader_m: if lead.tip_m.is_some() { lead.target.tip_m } else { seen.tip_m },
                 tip_m: seen.tip_m,
             },

@@ -50,6 +50,7 @@ impl ReaderContents {
         let Some(footer) = footer.and_then(|(_, content, _)| parse::footer(content)) else {
             return Ok(Err("its last record is damaged"));
         };
+        // In the MCAP specification 0 means that there is none; the same holds for the checksum.
         if footer.summary_start == 0 {
             return Ok(Err("it has no summary"));
         }

@@ -86,6 +86,7 @@ impl<'a> ReaderMessages<'a> {
         let may_hold = |one: &&contents::ContentsMessages| {
             let (first, last) = one.times_ns;
             let theirs = wanted.as_ref().is_none_or(|wanted| {
+                // A file without an index of messages does not state the channels of its chunks.
                 one.channels.is_empty() || one.channels.iter().any(|channel| wanted.contains(channel))
             });
             theirs && first < times_ns.end && last >= times_ns.start
@@ -115,6 +116,7 @@ impl Iterator for ReaderMessages<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         while let Some(&place) = self.places.get(self.next_place) {
+            // Nothing in the following chunks is older than this message.
             let first = self.open.peek().map(|Reverse(first)| first.0.0);
             if first.is_some_and(|first| first < place.times_ns.0) {
                 break;

@@ -53,6 +53,7 @@ pub(in crate::session) struct RecordPlace {
     pub(in crate::session) length: u64,
 }
 
+// Bytes read at once, so that the heads of small records need no read each.
 const WINDOW: u64 = 64 << 10;
 
 impl<'a> Walk<'a> {

@@ -2,6 +2,7 @@
 
 use std::io;
 
+// Offset basis and prime of FNV-1a with 64 bits.
 pub(super) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
 const FNV_PRIME: u64 = 0x0100_0000_01b3;
 

@@ -74,6 +74,7 @@ impl Objects {
                 *memory = ContactMemory::default();
                 continue;
             }
+            // The force acts in the middle of the overlap.
             let touched_m = position_m - Vector3::z() * (ring.tube_radius_m - 0.5 * depth_m);
             let touch = ContactTouch {
                 depth_m,

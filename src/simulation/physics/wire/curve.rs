@@ -12,7 +12,7 @@ use crate::physics::geometry::Circle;
 const PIECE_M: f64 = 5e-4;
 /// Minimum number of pieces between two points.
 const PIECES_MIN: usize = 8;
-/// Steps of the golden section that narrow down a closest point, to 1/15000 of the interval.
+/// Steps of the golden section that narrow down a closest point, to 1/15000 of the interval (`GOLDEN^20`).
 const NARROWINGS: usize = 20;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -145,6 +145,7 @@ impl SmoothCurve {
                 self.note(circle, i, &[gaps_m[0], gaps_m[1], f64::INFINITY], both_m, &mut reach);
                 gaps_m = [f64::INFINITY; 2];
                 height_before_m = None;
+                // No piece is longer than `piece_m`, so none of the skipped points is in reach.
                 i += (((away_m - reach_m) / self.piece_m.max(1e-6)) as usize).max(1);
                 continue;
             }
@@ -221,6 +222,7 @@ impl SmoothCurve {
     /// m.
     fn cross(&self, circle: &Circle, piece: usize, from_m: f64, to_m: f64) -> (f64, f64) {
         let span_m = from_m - to_m;
+        // A piece in the plane of the loop crosses it everywhere; its beginning is as good as any point.
         let fraction = if span_m.abs() > 0.0 { (from_m / span_m).clamp(0.0, 1.0) } else { 0.0 };
         let (along_m, point_m) = self.between(piece as f64 + fraction);
         (along_m, (point_m - circle.centre_m).norm())

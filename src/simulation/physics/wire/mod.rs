@@ -103,6 +103,7 @@ struct TipLoop {
 impl Wire {
     /// Creates the wire of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &WireSetting, period_s: f64) -> Self {
+        // The limits of `Objects::new`.
         let period_s = if period_s > 0.0 { period_s.min(0.1) } else { 1e-3 };
         let contact = &setting.contact;
         let law = Law {

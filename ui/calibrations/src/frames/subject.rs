@@ -39,7 +39,7 @@ impl FrameSubject {
     pub fn of(rig: &RigConfig, side: Side, roster: &Roster) -> Option<Self> {
         let devices = rig.devices.as_ref()?;
         let set = devices.arm(side)?.clone();
-        let arm = Arm::new(&set.mount).ok()?;
+        let arm = set.kinematics().ok()?;
         let serial = |part: RigPart| {
             let entry = roster.iter().find(|entry| entry.part == Some(part))?;
             entry.view.report().identity.map(|identity| identity.serial).filter(|serial| !serial.is_empty())
@@ -64,7 +64,7 @@ impl FrameSubject {
 
     /// Returns the arm for the kinematics.
     pub fn arm(&self) -> Option<Arm> {
-        Arm::new(&self.set.mount).ok()
+        self.set.kinematics().ok()
     }
 
     /// Returns the tip in the flange's frame, m.

@@ -29,6 +29,7 @@ const ARGUMENTS: &[&str] = if cfg!(windows) {
 } else {
     &[]
 };
+// Enough for the partials up to 2.6 kHz; a higher rate would only enlarge the files.
 const RATE_HZ: u32 = 22_050;
 /// Interval between the starts of two bursts of high priority, s.
 const HIGH_EVERY_S: f64 = 6.0;
@@ -67,6 +68,7 @@ impl Sound {
 
     /// Plays a burst when one is due; call in each frame with the priority that requires a sound.
     pub fn step(&mut self, calls: Option<AlarmPriority>, time_s: f64) {
+        // This also removes a process that has ended.
         if let Some(Ok(Some(status))) = self.playing.as_mut().map(Child::try_wait) {
             self.playing = None;
             self.failure = (!status.success()).then(|| text::alarms::player_failed(&status));
@@ -76,7 +78,9 @@ impl Sound {
             return;
         };
         let every_s = if priority == AlarmPriority::High { HIGH_EVERY_S } else { MEDIUM_EVERY_S };
+        // A change of the priority is heard at once.
         let due = self.last.is_none_or(|(last, at_s)| last != priority || time_s - at_s >= every_s);
+        // Two bursts at the same time would sound like another priority.
         if !due || self.playing.is_some() {
             return;
         }
@@ -142,6 +146,7 @@ const fn file_of(priority: AlarmPriority) -> &'static str {
 fn pulses(priority: AlarmPriority) -> (Vec<f64>, f64) {
     match priority {
         AlarmPriority::High => {
+            // Five pulses with a longer pause after the third, twice (IEC 60601-1-8).
             let five = [0.0, 0.2, 0.4, 0.75, 0.95];
             (five.iter().copied().chain(five.iter().map(|t_s| t_s + 1.75)).collect(), 0.12)
         }
@@ -164,7 +169,9 @@ fn burst(priority: AlarmPriority) -> Vec<f64> {
             let left_s = (count - i) as f64 / f64::from(RATE_HZ);
             // Ramp the volume, because a step would be heard as a click.
             let loud = (t_s / 0.015).min(left_s / 0.015).min(1.0);
+            // Partials make the tone audible on small loudspeakers too.
             let tone: f64 = (1..=4).map(|k| (TAU * tone_hz * f64::from(k) * t_s).sin() / f64::from(k)).sum();
+            // The sum of the partials is below 2, so 0.35 stays within the range of a sample.
             *sample = 0.35 * loud * tone;
         }
     }

@@ -1,7 +1,14 @@
 //! Facts about each arm.
 
-use nima_core::safety::Gate;
-use nima_machine::{messages::LoopState, rig::Side};
+use nalgebra::Vector3;
+use nima_core::{
+    kinematics::{JOINTS, Joints},
+    safety::Gate,
+};
+use nima_machine::{
+    messages::LoopState,
+    rig::{RigPart, Side},
+};
 
 use super::LiveState;
 use crate::stiffness::ContactStiffness;
@@ -33,5 +40,25 @@ impl LiveState {
     /// Returns the stiffness of the stiffer current or last contact of both hands, N/m: the gain is common to both.
     pub fn stiffness_n_m(&self) -> Option<f64> {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
+    }
+
+    /// Returns base, joints, flange and sensor of a robot arm, m (`world`), from its joint angles of the last tenth of a
+    /// second; empty while they are unknown.
+    pub fn links_m(&self, side: Side) -> Vec<Vector3<f32>> {
+        self.measured_links_m(side).unwrap_or_default()
+    }
+
+    fn measured_links_m(&self, side: Side) -> Option<Vec<Vector3<f32>>> {
+        let arm = self.rig.devices.as_ref()?.arm(side)?.kinematics().ok()?;
+        let place = self.roster.iter().position(|entry| entry.part == Some(RigPart::Arm(side)))?;
+        let angles = &self.blocks.back()?.devices.get(place)?.channels[..JOINTS];
+        if angles.iter().any(|angle| angle.count == 0) {
+            return None;
+        }
+        let pose = arm.pose(&Joints::from_fn(|joint, _| angles[joint].mean));
+        let joints_m = &pose.chain.origin_m[..arm.model().joints()];
+        let ends = [pose.chain.world_from_flange, pose.world_from_s1].map(|end| end.translation.vector);
+        let base_m = arm.world_from_base().translation.vector;
+        Some(std::iter::once(&base_m).chain(joints_m).chain(&ends).map(|at_m| at_m.cast()).collect())
     }
 }

@@ -58,6 +58,7 @@ impl ClearTip<'_> {
 
 /// Adds a plain shaft with one cone. The shaft is drawn in pieces, so that only those over the tip are left out.
 pub(super) fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>, clear: ClearTip<'_>) {
+    // Shorter pieces would leave out less of the shaft in front of the tip, but need more triangles.
     const PIECE_M: f32 = 0.004;
     let paint = Paint(theme::DARK.measured, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
@@ -74,6 +75,7 @@ pub(super) fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vect
 
 /// Draws a beaded shaft with a double cone: the shape alone distinguishes it from the other arrow.
 pub(super) fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vector3<f32>, clear: ClearTip<'_>) {
+    // About three beads for each newton.
     const BEAD_M: f32 = 0.0055;
     let paint = Paint(theme::DARK.rendered, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };

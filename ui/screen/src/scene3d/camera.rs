@@ -12,7 +12,8 @@ const ENDOSCOPE_FIELD: f32 = 0.92;
 /// and the hands above it, m.
 const NEAR_TISSUE_M: f32 = 0.128;
 const NEAR_BOARD_M: f32 = 0.168;
-const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
+/// From next to the tip to where a whole robot arm is in view, m.
+const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=2.5;
 /// Range of pitch: from nearly level with the surface to nearly straight down, rad.
 const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
 /// Sine of the minimum angle between a horizontal plane and the line of sight: below it a point of the screen covers

@@ -39,6 +39,8 @@ pub struct Extras {
     pub frames: bool,
     /// Shadows on a board.
     pub shadows: bool,
+    /// The links of the robot arm.
+    pub robot: bool,
     /// More distant objects are darker.
     pub depth: bool,
     /// The endoscope image is round, in the Surgeon view.
@@ -47,7 +49,7 @@ pub struct Extras {
 
 impl Default for Extras {
     fn default() -> Self {
-        Self { ceiling: false, frames: false, shadows: true, depth: true, round: true }
+        Self { ceiling: false, frames: false, shadows: true, robot: true, depth: true, round: true }
     }
 }
 
@@ -56,19 +58,21 @@ pub enum MenuSwitch {
     Ceiling,
     Frames,
     Shadows,
+    Robot,
     Depth,
     Round,
 }
 
 impl MenuSwitch {
     /// All switches, in the order of the menu.
-    pub const ALL: [Self; 5] = [Self::Ceiling, Self::Frames, Self::Shadows, Self::Depth, Self::Round];
+    pub const ALL: [Self; 6] = [Self::Ceiling, Self::Frames, Self::Shadows, Self::Robot, Self::Depth, Self::Round];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Ceiling => CEILING.get(),
             Self::Frames => FRAMES.get(),
             Self::Shadows => SHADOWS.get(),
+            Self::Robot => text::field::ROBOT.get(),
             Self::Depth => DEPTH.get(),
             Self::Round => ROUND.get(),
         }
@@ -79,6 +83,7 @@ impl MenuSwitch {
             Self::Ceiling => CEILING_MEANING.get(),
             Self::Frames => FRAMES_MEANING.get(),
             Self::Shadows => text::field::SHADOWS_HOVER.get(),
+            Self::Robot => text::field::ROBOT_HOVER.get(),
             Self::Depth => text::field::DEPTH_HOVER.get(),
             Self::Round => text::field::ROUND_HOVER.get(),
         }
@@ -100,6 +105,7 @@ impl Extras {
             MenuSwitch::Ceiling => &mut self.ceiling,
             MenuSwitch::Frames => &mut self.frames,
             MenuSwitch::Shadows => &mut self.shadows,
+            MenuSwitch::Robot => &mut self.robot,
             MenuSwitch::Depth => &mut self.depth,
             MenuSwitch::Round => &mut self.round,
         }
@@ -228,6 +234,7 @@ mod tests {
             targets_m: vec![],
             pose,
             trail_m: vec![],
+            links_m: vec![],
         };
         let frames = frames(&scene, &[arm(Side::Right, 0.05), arm(Side::Left, 0.0)]);
         assert_eq!(frames.len(), 6);

@@ -32,6 +32,7 @@ pub struct GlFrame {
 
 /// Bands of the background gradient; neighbouring bands differ by at most 1/255.
 const BACKDROP_STEPS: i32 = 32;
+// Samples of a pixel; every driver of OpenGL 3 and OpenGL ES 3 supports four.
 const SAMPLES: i32 = 4;
 /// Size of a [`MeshVertex`](super::mesh::MeshVertex), checked by a test of the mesh.
 const VERTEX_BYTES: i32 = 28;
@@ -107,6 +108,7 @@ impl GlRenderer {
         let mut state = self.target.lock().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: called inside egui's paint callback with its context current; egui restores its own state after it.
         unsafe {
+            // The framebuffer of egui is not always number 0.
             let into = gl.get_parameter_framebuffer(glow::DRAW_FRAMEBUFFER_BINDING);
             if frame.smooth {
                 state.fit(gl, size);
@@ -123,6 +125,7 @@ impl GlRenderer {
             if let Some(target) = target {
                 gl.scissor(place.left_px, place.from_bottom_px, size[0], size[1]);
                 if !target.copy(gl, into, place) {
+                    // A driver that cannot copy once is not tried again.
                     target.destroy(gl);
                     *state = TargetState::Refused;
                 }

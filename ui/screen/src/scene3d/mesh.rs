@@ -154,6 +154,7 @@ impl Mesh {
         lift: impl Fn(f32, f32) -> f32,
         paint: Paint,
     ) {
+        // Fewer corners would be visible in the outline.
         const AROUND: u32 = 28;
         const ACROSS: u32 = 10;
         let first = self.vertices.len() as u32;
@@ -172,6 +173,7 @@ impl Mesh {
     /// Adds a torus about its own z axis, rotated: distance from its centre to the centre of its tube, and radius of
     /// the tube.
     pub fn torus(&mut self, centre: Vector3<f32>, turn: &UnitQuaternion<f32>, [major, tube]: [f32; 2], paint: Paint) {
+        // Fewer corners would be visible in the outline.
         const AROUND: u32 = 28;
         const ACROSS: u32 = 12;
         let first = self.vertices.len() as u32;

@@ -275,12 +275,15 @@ fn arm(live: &LiveState, side: Side, view: &SceneView) -> Option<StageArm> {
     // Hidden forces must not reveal anything, not even whether they are known.
     let hidden = StagePose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };
     let pose = if view.arrows { pose } else { hidden };
+    // The endoscope is inside the body, the arm outside.
+    let is_drawn = view.extras.robot && view.look == CameraLook::Free;
     Some(StageArm {
         side,
         trocar_m: scene.trocar_m.cast(),
         targets_m: scene.targets_m.iter().map(|position_m| position_m.cast()).collect(),
         pose,
         trail_m: live.trails[side.index()].iter().copied().collect(),
+        links_m: if is_drawn { live.links_m(side) } else { Vec::new() },
     })
 }
 

@@ -142,6 +142,7 @@ impl MouseDrive {
     ) -> bool {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged) && !live.is_shown_only();
         if self.is_on() && !runs {
+            // A loop that has stopped guides no hand, so there is nothing to send.
             self.forget();
         }
         let place = Rect::from_min_size(rect.right_bottom() - vec2(250.0, 46.0), vec2(150.0, 34.0));
@@ -174,7 +175,7 @@ impl MouseDrive {
         self.is_on()
     }
 
-    /// Restarts the trial by its key, whoever drives the instruments; a participant of a study cannot.
+    /// Restarts the trial by its key, whether or not the mouse drives an instrument; a participant of a study cannot.
     pub(super) fn restart_by_key(&mut self, ui: &Ui, live: &LiveState, outbox: &mut Outbox) {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
         if !self.restarts(live) || !runs || ui.ctx().text_edit_focused() {
@@ -205,6 +206,7 @@ impl MouseDrive {
     ) {
         let before_m = self.position_m;
         let takes = view.contains_pointer() || view.is_pointer_button_down_on();
+        // While a person writes, the keys belong to the text.
         let writes = ui.ctx().text_edit_focused();
         for event in ui.input(|input| input.events.clone()) {
             match event {
@@ -241,6 +243,7 @@ impl MouseDrive {
             Key::ArrowDown => self.step(-camera.away() * STEP_M),
             Key::PageUp => self.step(Vector3::z() * STEP_M),
             Key::PageDown => self.step(-Vector3::z() * STEP_M),
+            // A key that is held repeats movements only.
             _ if repeat => {}
             Key::H => self.change_side(),
             Key::G if live.scene.objects.is_some() => self.jaws(live, outbox),

@@ -101,7 +101,14 @@ mod tests {
             rendered_n: Vector3::zeros(),
         };
         let targets_m = vec![Vector3::new(-0.03, 0.02, 0.0)];
-        StageArm { side: Side::Right, trocar_m: Vector3::new(0.0, -0.06, 0.14), targets_m, pose, trail_m: vec![] }
+        StageArm {
+            side: Side::Right,
+            trocar_m: Vector3::new(0.0, -0.06, 0.14),
+            targets_m,
+            pose,
+            trail_m: vec![],
+            links_m: vec![],
+        }
     }
 
     fn at(point_m: &Vector3<f32>) -> Option<String> {

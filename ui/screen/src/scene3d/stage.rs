@@ -91,6 +91,7 @@ impl Dents {
 
     /// Returns the upward normal of the deformed surface.
     fn normal(&self, x: f32, y: f32) -> Vector3<f32> {
+        // Small compared to the width of a dent, m.
         const STEP: f32 = 2e-4;
         let slope = |dx, dy| (self.lift_m(x + dx, y + dy) - self.lift_m(x - dx, y - dy)) / (2.0 * STEP);
         Vector3::new(-slope(STEP, 0.0), -slope(0.0, STEP), 1.0).normalize()
@@ -108,6 +109,8 @@ pub struct StageArm {
     pub pose: StagePose,
     /// Recent positions of the tip, m, oldest first.
     pub trail_m: Vec<Vector3<f32>>,
+    /// Base, joints, flange and sensor of the robot arm, m; empty if it is not drawn.
+    pub links_m: Vec<Vector3<f32>>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -144,7 +147,8 @@ pub fn build(scene: &Scene, arms: &[StageArm], shown: Option<&DisplayedObjects>,
         shadows.rod(&tool.unwrap_or(pose.tip_m), trocar_m, SHAFT_RADIUS_M);
         dents.0[side.index()] = Dent::new(scene, &pose.tip_m);
     }
-    for StageArm { targets_m, trail_m, .. } in arms {
+    for StageArm { targets_m, trail_m, links_m, trocar_m, .. } in arms {
+        robot(&mut mesh, links_m, trocar_m);
         for target_m in targets_m.iter().filter(|_| shown.is_none()) {
             mesh.ring(*target_m, [0.0055, 0.0008], |x, y| dents.lift_m(x, y), TARGET);
         }
@@ -225,6 +229,20 @@ fn shaft(mesh: &mut Mesh, trocar_m: &Vector3<f32>, knob: &Vector3<f32>) {
     mesh.tube([trocar_m + axis * 0.012, trocar_m + axis * 0.018], [SHAFT_RADIUS_M * 4.0; 2], 28, SLEEVE);
 }
 
+/// Draws the arm as capsules between its joints, and the shaft from the sensor to the trocar.
+fn robot(mesh: &mut Mesh, links_m: &[Vector3<f32>], trocar_m: &Vector3<f32>) {
+    for ends in links_m.windows(2) {
+        mesh.tube([ends[0], ends[1]], [LINK_RADIUS_M; 2], 20, LINK);
+        mesh.sphere(ends[1], LINK_RADIUS_M, 12, LINK);
+    }
+    if let Some(sensor_m) = links_m.last() {
+        mesh.tube([*sensor_m, *trocar_m], [SHAFT_RADIUS_M * 1.15; 2], 20, SHAFT);
+    }
+}
+
+/// Half the thickness of a link of the usual arms, m.
+const LINK_RADIUS_M: f32 = 0.035;
+const LINK: Paint = Paint(Color32::from_rgb(0x8a, 0x93, 0x9e), Material::Matte);
 const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal);
 
 /// Returns the starting points of both arrows: next to the tip, on the side that the shaft does not cover in the
@@ -248,7 +266,7 @@ mod tests {
 
     fn arm(pose: StagePose) -> StageArm {
         let trocar_m = Vector3::new(0.0, -0.06, 0.14);
-        StageArm { side: Side::Right, trocar_m, targets_m: vec![], pose, trail_m: vec![] }
+        StageArm { side: Side::Right, trocar_m, targets_m: vec![], pose, trail_m: vec![], links_m: vec![] }
     }
 
     #[test]

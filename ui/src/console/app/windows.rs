@@ -1,4 +1,4 @@
-//! The panels in windows of their own: the same panels as in the main window, each with the state of the machine and Stop.
+//! The panels in separate windows: the same panels as in the main window, each with the state of the machine and Stop.
 
 use egui::{Align, Button, Context, Frame, Layout, Margin, Panel, Ui, vec2};
 use nima_machine::messages::Command;

@@ -72,7 +72,7 @@ pub enum Action {
     RecordsPicture,
     /// Opens or closes a panel.
     Panel(PanelId),
-    /// Opens a panel in a window of its own, or closes that window.
+    /// Opens a panel in a separate window, or closes that window.
     Window(PanelId),
     /// Chooses a built-in layout.
     Arrange(Arrangement),

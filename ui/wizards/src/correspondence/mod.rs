@@ -41,6 +41,7 @@ const STEPS: [WizardStep; 4] = [
     WizardStep { name: text::wizards::STEP_RESULT, meaning: text::correspondence::STEP_RESULT_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const CHECK: usize = 0;
 const PUSHES: usize = 1;
 const RESULT: usize = 2;
@@ -262,6 +263,7 @@ impl Wizard for CorrespondenceWizard {
         if self.session.pushes() == before {
             return;
         }
+        // Pushes count only on their page.
         if self.frame.step == PUSHES {
             self.fit();
         } else {

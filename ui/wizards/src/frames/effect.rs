@@ -57,6 +57,7 @@ fn axes(painter: &Painter, at: Pos2, length: f64, frame: &Isometry3<f64>, before
         } else {
             painter.line_segment([at, end], Stroke::new(2.5, colour));
             let out = (end - at).normalized() * 9.0;
+            // An axis towards the viewer has no direction on the drawing.
             let out = if out.is_finite() { out } else { vec2(0.0, -9.0) };
             painter.text(end + out, Align2::CENTER_CENTER, name, theme::regular(13.0), theme::now().text);
         }

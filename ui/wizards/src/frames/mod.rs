@@ -40,6 +40,7 @@ const STEPS: [WizardStep; 4] = [
     WizardStep { name: text::wizards::STEP_RESULT, meaning: texts::STEP_RESULT_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: texts::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const CHECK: usize = 0;
 const RECORD: usize = 1;
 const RESULT: usize = 2;

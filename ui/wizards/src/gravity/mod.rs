@@ -45,6 +45,7 @@ const STEPS: [WizardStep; 5] = [
     WizardStep { name: text::gravity::STEP_FREE_MOTION, meaning: text::gravity::STEP_FREE_MOTION_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const CHECK: usize = 0;
 const POSES: usize = 1;
 const RESULT: usize = 2;
@@ -99,6 +100,7 @@ impl GravityWizard {
     fn fit(&mut self) {
         self.report = (self.session.poses().len() >= POSES_MIN)
             .then(|| self.session.report().map_err(|error| nima_words::report_text::quoted(&error)));
+        // Check and file belong to the previous model.
         self.pass = None;
         self.frame.saved = None;
     }
@@ -124,6 +126,7 @@ impl GravityWizard {
             let none_taken = self.session.poses().is_empty();
             let by_arm = text::gravity::OPTION_BY_ARM.get();
             let meaning = text::gravity::OPTION_BY_ARM_HOVER.get();
+            // Only before the first pose, because poses with and without the arm's orientation do not mix.
             if let Some(use_arm) = switch_ui(ui, none_taken, use_arm, by_arm, meaning) {
                 *self = Self::of(GravitySessionSettings { use_arm, ..*self.session.settings() });
             }
@@ -317,6 +320,7 @@ impl Wizard for GravityWizard {
     fn go_to(&mut self, step: usize) {
         self.frame.step = step;
         if step == RESULT && self.report.is_none() {
+            // With too few poses this is the error, which the page shows.
             self.report = Some(self.session.report().map_err(|error| nima_words::report_text::quoted(&error)));
         }
         if step == FREE_MOTION && self.pass.is_none() {

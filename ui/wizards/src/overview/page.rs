@@ -1,4 +1,4 @@
-//! The set-up page: tiles per arm, each with its state and reason, from which every wizard starts.
+//! The set-up page: tiles per arm with their state and its reason. Every wizard starts from a tile.
 
 use egui::{
     Align, Button, Color32, Id, Label, Layout, Rect, Response, RichText, Stroke, Ui, UiBuilder, WidgetInfo, vec2,

@@ -195,6 +195,7 @@ fn plot<'a>(name: &str, x: &str, y: &str) -> Plot<'a> {
 
 fn regression_ui(ui: &mut Ui, checked: &CheckResult) {
     let all = || checked.points.iter().flatten().flatten();
+    // At least from -1 to 1 N, so that noise does not fill the plot.
     let (low, high) = all().fold((-1.0_f64, 1.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
     let response =
         plot("tip_force_regression", text::tip_force::MEASURED_AXIS.get(), text::tip_force::PREDICTED_AXIS.get()).show(

@@ -65,6 +65,7 @@ impl<T> TrainingJob<T> {
 
 impl<T> Drop for TrainingJob<T> {
     fn drop(&mut self) {
+        // Its result is no longer needed.
         self.cancel();
     }
 }
@@ -92,6 +93,7 @@ impl Curves {
     fn add(&mut self, now: &TrainingProgress) {
         self.members.resize_with(self.members.len().max(now.members), LossCurve::default);
         self.elapsed_s = now.elapsed_s;
+        // A loss of 0 has no logarithm.
         let decades = |loss: f64| [now.epoch as f64, loss.max(1e-12).log10()];
         let Some(curve) = self.members.get_mut(now.member) else { return };
         curve.training.push(decades(now.training_loss));
@@ -142,6 +144,7 @@ fn write(recorder: &TipForceRecorder, path: &Path, keeps: bool) -> Result<(), St
 pub(super) fn train(order: TrainingOrder, curves: &Mutex<Curves>, cancel: &AtomicBool) -> Result<ForceModel, String> {
     let TrainingOrder { recorder, keep_previous, settings, bound: [sensor, tool], store } = order;
     let path = path_of(&store, "tip-force-data", &sensor)?;
+    // Written first, so that the recording survives the training.
     write(&recorder, &path, keep_previous)?;
     drop(recorder);
     let data =

@@ -37,6 +37,7 @@ const STEPS: [WizardStep; 5] = [
     WizardStep { name: text::wizards::STEP_CHECK, meaning: text::tip_force::STEP_CHECK_HOVER },
     WizardStep { name: text::wizards::STEP_SAVE, meaning: text::wizards::STEP_SAVE_HOVER },
 ];
+// Positions in `STEPS`.
 const READY: usize = 0;
 const RECORD: usize = 1;
 const TRAIN: usize = 2;

@@ -33,6 +33,11 @@ pub const DEPTH_HOVER: Text = Text::of(
     "More distant objects are darker, as with an endoscope whose light is at the lens. This helps to judge depth.",
     "Wie unter einem Endoskop mit Licht am Objektiv: Ferneres ist dunkler. Das hilft, Tiefe einzuschätzen.",
 );
+pub const ROBOT: Text = Text::of("Robot arm", "Roboterarm");
+pub const ROBOT_HOVER: Text = Text::of(
+    "The links of the arm, from its joint angles; the Endoscope view does not show them",
+    "Die Glieder des Arms aus seinen Gelenkwinkeln; die Endoskopsicht zeigt sie nicht",
+);
 pub const ROUND: Text = Text::of("Round image in the Surgeon view", "Rundes Bild in der Ansicht Chirurg");
 pub const ROUND_HOVER: Text = Text::of(
     "Shows the endoscope image as a disc with a dark rim",

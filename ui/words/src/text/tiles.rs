@@ -13,7 +13,7 @@ pub const DRAG_HOVER: Text = Text::of(
 );
 pub const OPEN_WINDOW: Text = Text::of("Open in its own window", "In eigenem Fenster öffnen");
 pub const OPEN_WINDOW_HOVER: Text = Text::of(
-    "Opens the panel in a window of its own, for a second monitor; closing that window returns it",
+    "Opens the panel in its own window, for a second monitor; closing that window returns it",
     "Öffnet das Panel in einem eigenen Fenster, etwa auf einem zweiten Bildschirm; wird es geschlossen, kehrt das Panel \
      zurück",
 );

@@ -109,6 +109,7 @@ impl Problem for HandEyeSettings {
     fn miss(&self, frames: &HandEyeFrames, row: &HandEyeRow) -> RowMiss {
         let seen = frames.base_from_c * row.c_from_m * frames.flange_from_m.inverse();
         let tip_m = Point3::from(self.tip_in_flange_m);
+        // At the tip, because an error of the frames matters there.
         let place_m = (seen * tip_m - row.base_from_flange * tip_m).norm();
         RowMiss { place_m: Some(place_m), angle_rad: Some(seen.rotation.angle_to(&row.base_from_flange.rotation)) }
     }

@@ -41,6 +41,7 @@ struct RefineLinear {
 pub(super) fn refined(rows: &[HandEyeRow], start: HandEyeFrames) -> Option<RefinedFrames> {
     let mut frames = start;
     let mut here = linear(rows, &frames);
+    // Almost Gauss-Newton; the damping grows only if a step fails.
     let mut damping = 1e-6;
     for _ in 0..STEPS {
         let mut damped = here.normal;
@@ -59,6 +60,7 @@ pub(super) fn refined(rows: &[HandEyeRow], start: HandEyeFrames) -> Option<Refin
                 break;
             }
         } else {
+            // Faster than it is relaxed, so that a wrong direction is left quickly.
             damping *= 30.0;
         }
     }
@@ -71,6 +73,7 @@ pub(super) fn unmoved(rows: &[HandEyeRow], frames: HandEyeFrames) -> Option<Refi
 }
 
 fn with_covariance(rows: &[HandEyeRow], frames: HandEyeFrames, here: &RefineLinear) -> Option<RefinedFrames> {
+    // Six equations per row for twelve unknowns; at least one, so that the division is finite.
     let freedom = (6 * rows.len()).saturating_sub(UNKNOWNS).max(1);
     let covariance = here.normal.cholesky()?.inverse() * (here.squares / freedom as f64);
     Some(RefinedFrames { frames, covariance, freedom })
@@ -87,6 +90,7 @@ fn linear(rows: &[HandEyeRow], frames: &HandEyeFrames) -> RefineLinear {
         slopes.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
         slopes.fixed_view_mut::<3, 3>(0, 6).copy_from(&-Matrix3::identity());
         slopes.fixed_view_mut::<3, 3>(0, 9).copy_from(&place_m.cross_matrix());
+        // Divided by the noise, so that lengths and angles count by their accuracy.
         linear.add(&(slopes / NOISE_M), &((row.c_from_m.translation.vector - place_m) / NOISE_M));
         let mut slopes = Slopes::zeros();
         slopes.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());

@@ -10,6 +10,7 @@ use crate::calibration::{frames::spread::nearest_orthogonal, rotation_mean::Rota
 pub(super) fn park_martin(rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
     let mut moment = Matrix3::zeros();
     for (i, one) in rows.iter().enumerate() {
+        // Every pair of poses, so that no single pose is the reference for all others.
         for other in &rows[..i] {
             let a = (other.base_from_flange.rotation.inverse() * one.base_from_flange.rotation).scaled_axis();
             let b = (other.c_from_m.rotation.inverse() * one.c_from_m.rotation).scaled_axis();
@@ -17,6 +18,7 @@ pub(super) fn park_martin(rows: &[HandEyeRow]) -> Option<HandEyeFrames> {
         }
     }
     let eigen = SymmetricEigen::try_new(moment.transpose() * moment, f64::EPSILON, 100)?;
+    // `MIN_POSITIVE` keeps the root finite if all turns have one axis.
     let root = Matrix3::from_diagonal(&eigen.eigenvalues.map(|square| 1.0 / square.max(f64::MIN_POSITIVE).sqrt()));
     let x = rotation(&(eigen.eigenvectors * root * eigen.eigenvectors.transpose() * moment.transpose()))?;
     let mut mean = RotationMean::default();

@@ -25,7 +25,7 @@ const MIN_TILT_DEG: f64 = 4.0;
 /// equal lines. Design choice.
 const APART_RAD: f64 = 0.035;
 /// A session is complete with this number of lines. With 40, 95 % of 200 simulated calibrations with a tracker have an
-/// error of at most 0.36 mm (`docs/frames.md`).
+/// error of at most 0.36 mm (`docs/results/frames.md`).
 const PLENTY: usize = 40;
 const PLENTY_TILT_DEG: f64 = 10.0;
 

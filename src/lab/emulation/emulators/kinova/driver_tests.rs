@@ -8,6 +8,7 @@ use std::{
 };
 
 use nalgebra::Vector3;
+use nima_core::kinematics::ArmModel;
 use nima_devices::{
     ARM_JOINTS, ArmReading, ConnectionState, Device as _, DeviceError, Loss, TimedReading,
     kinova::{
@@ -38,7 +39,7 @@ pub(super) fn started(arm: EmulatedKinova) -> (EmulatorThread, KinovaSettings) {
     started_with(arm, StandIn::at(HOME_RAD))
 }
 
-fn started_with(arm: EmulatedKinova, body: impl KinovaBody + 'static) -> (EmulatorThread, KinovaSettings) {
+pub(super) fn started_with(arm: EmulatedKinova, body: impl KinovaBody + 'static) -> (EmulatorThread, KinovaSettings) {
     let serving = arm.with(body).serve().unwrap();
     let settings = KinovaSettings::at(&serving.endpoint).unwrap();
     (serving, KinovaSettings { speed_fraction: 1.0, lead_rad: 0.2, ..settings })
@@ -64,7 +65,7 @@ impl Ticking {
         reading.map(|stamped| stamped.value)
     }
 
-    fn latest(&self) -> ArmReading {
+    pub(super) fn latest(&self) -> ArmReading {
         self.reading.unwrap().value
     }
 
@@ -77,7 +78,7 @@ impl Ticking {
     }
 
     /// One tick towards a target, with no joint faster than 1 rad/s.
-    fn lead(&mut self, target_rad: &[f64; ARM_JOINTS]) {
+    pub(super) fn lead(&mut self, target_rad: &[f64; ARM_JOINTS]) {
         let at = *self.driver.command_rad();
         let furthest = target_rad.iter().zip(&at).map(|(to, at)| (to - at).abs()).fold(0.0, f64::max);
         let fraction = (TICK_S / furthest).min(1.0);
@@ -85,7 +86,7 @@ impl Ticking {
         self.tick();
     }
 
-    fn enter_low_level(&mut self) {
+    pub(super) fn enter_low_level(&mut self) {
         assert!(self.until(500, |ticking| ticking.reading.is_some()), "{:?}", self.driver.health());
         self.driver.enter_low_level().unwrap();
         let servoing = self.until(1000, |ticking| ticking.reading.is_some_and(|reading| reading.value.servoing));
@@ -335,14 +336,18 @@ fn a_missed_cycle_is_a_fault_that_only_a_command_clears() {
         drop(ticking);
         let clearing = FaultClearing::default();
         for _ in 0..2 {
-            let trouble = open_clearing(&settings, &clearing).unwrap_err();
+            let trouble = open_clearing(&settings, &ArmModel::GEN3, &clearing).unwrap_err();
             assert!(
                 matches!(&trouble, DeviceError::DeviceFault { words, .. } if words.contains("missed")),
                 "{trouble}"
             );
         }
         clearing.command();
-        let mut ticking = Ticking { driver: open_clearing(&settings, &clearing).unwrap(), now_s: 0.0, reading: None };
+        let mut ticking = Ticking {
+            driver: open_clearing(&settings, &ArmModel::GEN3, &clearing).unwrap(),
+            now_s: 0.0,
+            reading: None,
+        };
         ticking.enter_low_level();
     });
 }

@@ -5,14 +5,19 @@ use std::{
     net::TcpListener,
 };
 
+use nima_core::kinematics::ArmModel;
 use nima_devices::{
-    DeviceError,
-    kinova::{KinovaSettings, open},
+    ARM_JOINTS, DeviceError,
+    kinova::{FaultClearing, KinovaSettings, open, open_clearing},
 };
+use nima_machine::config::urdf::{ChainEnds, chain_of};
 use nima_testing::real_time::judged;
 
-use super::driver_tests::{patient, started};
-use crate::emulators::{EmulatedFault, kinova::EmulatedKinova};
+use super::driver_tests::{Ticking, patient, started, started_with};
+use crate::emulators::{
+    EmulatedFault,
+    kinova::{EmulatedKinova, StandIn},
+};
 
 #[test]
 fn every_trouble_while_opening_has_its_cause() {
@@ -71,5 +76,32 @@ fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
         let trouble = open(&KinovaSettings { tcp_port, ..settings }).unwrap_err();
         assert!(matches!(&trouble, DeviceError::WrongProduct { .. }), "{trouble}");
         answering.join().unwrap();
+    });
+}
+
+#[test]
+fn a_gen3_with_six_joints_is_led_by_its_description_and_no_other_arm_is() {
+    judged(|| {
+        let text = include_str!("../../../../../assets/arms/gen3-6dof.urdf");
+        let ends = ChainEnds { base_link: "base_link", flange_link: "end_effector_link" };
+        let model = ArmModel::new(&chain_of(text, ends, 2.0).unwrap()).unwrap();
+        let (_serving, settings) = started(patient());
+        let other = open_clearing(&settings, &model, &FaultClearing::default()).unwrap_err();
+        assert!(matches!(other, DeviceError::WrongProduct { found, .. } if found == "arm with 7 joints"));
+        let body = StandIn::at([0.3; ARM_JOINTS]);
+        let (_serving, settings) = started_with(EmulatedKinova { joints: 6, ..patient() }, body);
+        let driver = open_clearing(&settings, &model, &FaultClearing::default()).unwrap();
+        let mut ticking = Ticking { driver, now_s: 0.0, reading: None };
+        ticking.enter_low_level();
+        let begin_rad = *ticking.driver.command_rad();
+        let mut target_rad = begin_rad.map(|rad| rad + 0.05);
+        target_rad[6] = 0.0;
+        for _ in 0..200 {
+            ticking.lead(&target_rad);
+        }
+        let reading = ticking.latest();
+        assert!(reading.servoing && reading.joint_rad[6].abs() < 1e-12, "{reading:?}");
+        let miss_rad = |joint: usize| (reading.joint_rad[joint] - target_rad[joint]).abs();
+        assert!((0..6).all(|joint| miss_rad(joint) < 1e-3), "{reading:?}");
     });
 }

@@ -1,7 +1,7 @@
 //! The identified polynomial degrees: how often each is chosen, how they change over time, and how well the motion
 //! determines them.
 
-use egui::{Align2, Button, Rect, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Button, Label, Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima_core::impedance::Mode;
 use nima_machine::messages::LoopState;
 use nima_screen::{
@@ -65,7 +65,8 @@ pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
             let [name, meaning] = key(rule);
             key_ui(ui, colour, name, meaning);
         }
-        ui.label(small(text::degrees::last_minutes(DEGREES_S / 60.0)));
+        // As one piece: a long language moves it to the next row.
+        ui.add(Label::new(small(text::degrees::last_minutes(DEGREES_S / 60.0))).extend());
     });
     switches_ui(ui, live, state);
     chart_ui(ui, live, *state);

@@ -11,7 +11,10 @@ use nima_panels::{
     settings::{CROP_MAX_PERCENT, ConsoleSettings, ImageSettings},
     tiles::{Arrangement, PanelId, PanelLayout},
 };
-use nima_screen::{alarms::strip::Alarms, widgets::with_icon};
+use nima_screen::{
+    alarms::strip::Alarms,
+    widgets::{fitting_style, with_icon},
+};
 use nima_words::{
     language::{Language, Text},
     text,
@@ -256,8 +259,10 @@ fn panels_ui(ui: &mut Ui, layout: &PanelLayout) -> Option<Action> {
 fn panel_ui(ui: &mut Ui, layout: &PanelLayout, panel: PanelId) -> Option<Action> {
     ui.spacing_mut().item_spacing.x = 3.0;
     let open = layout.is_open(panel);
-    let button = Button::selectable(open, panel.title()).frame_when_inactive(true).truncate();
-    let response = ui.add_sized(vec2(118.0, 26.0), button);
+    let size = vec2(118.0, 26.0);
+    let font = fitting_style(ui, panel.title(), &TextStyle::Button, size.x - 2.0 * ui.spacing().button_padding.x);
+    let name = RichText::new(panel.title()).font(font);
+    let response = ui.add_sized(size, Button::selectable(open, name).frame_when_inactive(true));
     let meaning = if open { text::menu::PANEL_OPEN_HOVER.get() } else { text::menu::PANEL_CLOSED_HOVER.get() };
     if response.on_hover_text(format!("{}\n{meaning}", panel.meaning())).clicked() {
         return Some(Action::Panel(panel));

@@ -1,6 +1,6 @@
 //! Ends of the wait-free queues between the loop and ordinary threads.
 //!
-//! The loop holds a [`Producer`] or [`Consumer`] of its own. Its operations end after a fixed number of steps, whatever
+//! The loop holds its own [`Producer`] or [`Consumer`]. Its operations end after a fixed number of steps, whatever
 //! the thread at the other end does. A queue that waits for the other thread to complete its operation would hold the
 //! processor for ever if that thread has a lower priority and was preempted on the same processor.
 

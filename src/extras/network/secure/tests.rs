@@ -139,7 +139,7 @@ fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
         assert!(!received.is_agreed());
         answers += u32::from(received.answer > 0);
         flooded += u32::from(received.trouble == Some(HandshakeError::Flooded));
-        // Also initiations with invented cookies.
+        // Some initiations have invented cookies.
         let mut initiation = [7; 200];
         initiation[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(DatagramKind::Initiation, u64::from(i)));
         let received = reception.receive(&initiation, from(i), f64::from(i) * 1e-5, &mut out);

@@ -4,6 +4,7 @@
 //! reports the position. Every writer writes a temporary file first and renames it, except the writer of a session,
 //! whose file is valid at every moment while it grows.
 
+pub mod bag;
 pub mod csv;
 pub mod messages;
 pub mod session;

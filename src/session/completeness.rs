@@ -1,4 +1,4 @@
-//! What a session file lacks: one list for every command that reads a session.
+//! The data that a session file lacks: one list for every command that reads a session.
 
 use nima_recording::session::SessionReader;
 

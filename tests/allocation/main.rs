@@ -4,6 +4,7 @@
 //! holds `alone`.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod ati;
 mod bota;
 mod counting;
 mod device_rig;

@@ -23,7 +23,7 @@ use nima_tests::plan;
 
 use crate::file::{about, replayed};
 
-/// An audience that can block the recorder's thread like a slow disk.
+/// Blocks the recorder's thread on request, like a slow disk.
 #[derive(Clone, Debug, Default)]
 struct Watching {
     blocks: Arc<AtomicBool>,

@@ -1,4 +1,4 @@
-//! Every fault of every emulated device in the running loop: what is reported, how soon, how the force changes, and
+//! Every fault of every emulated device in the running loop: the reported fault, its delay, the change of the force, and
 //! whether the device recovers. The whole writes the table in `docs/results/device-faults.md`.
 #![cfg(target_os = "linux")]
 use std::{

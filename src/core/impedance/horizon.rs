@@ -21,7 +21,7 @@ const MARGIN: f64 = 0.98;
 /// Renewals of the solutions per second (at most one per tick): they are large, and hardly change in 5 ms.
 const RENEW_HZ: f64 = 200.0;
 
-/// Stores the predictions of every candidate (motion columns 0 to 15; 0 is no correction), and compares them with the
+/// Stores the predictions of every candidate (motion columns 0 to 15; 0 means no correction), and compares them with the
 /// change of force that followed. The prediction for time `s` uses the solution, the force and the features of `s - D`
 /// and the features of `s`, which are available to a leader at `s`.
 #[derive(Clone, Debug)]

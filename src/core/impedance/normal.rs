@@ -145,9 +145,9 @@ impl SimdLoop for Renew<'_> {
                     let a = V::of(a);
                     for c in 0..BLOCK {
                         known[c] = known[c].plus(a.times(row[c]));
-                        // Inverses are stored, because a multiplication is cheaper than a division in every later row.
                     }
                 }
+                // Inverses are stored, because a multiplication is cheaper than a division in every later row.
                 let inverse = V::of(&self.factor.inverse[k]);
                 let right = V::of(&self.factor.right[k]);
                 let row = &mut rows[k];

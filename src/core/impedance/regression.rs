@@ -6,8 +6,8 @@ use super::{
 };
 use crate::signal::{Lanes, settled};
 
-// Longer than the longest delay (1 s), so that it contains changes over it.
 /// Memory of the regression (s). Half or twice any memory changes the mean error on recordings by less than 2 %.
+/// Longer than the longest delay (1 s), so that it contains changes over it.
 const MEMORY_S: f64 = 3.0;
 /// Ridges, in seconds of typical motion without a change of force. Each of the three lowers the mean error on recordings.
 const RIDGES_S: [f64; RIDGES] = [0.0003, 0.01, 0.3];

@@ -51,7 +51,7 @@ pub struct ChainSettings {
     /// Keeps the force at standstill instead of fading it in the dead band.
     pub static_hold: bool,
     pub energy: EnergyMode,
-    /// Apparent mass of the handle alone, kg, from which the governor recognises a released handle; 0 if unknown: the
+    /// Apparent mass of the handle alone, kg; the governor recognises a released handle by it. 0 if unknown: the
     /// governor then passes every force.
     pub handle_kg: f64,
     /// Viscous friction of the handle's bearings and cables, N s/m.

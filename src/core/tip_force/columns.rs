@@ -107,9 +107,9 @@ impl Expansion {
 
     /// Returns the number of measured features, which come first; signs and products follow.
     pub fn measured(&self) -> usize {
+        // Products repeat the measured columns, so doubt is judged without them.
         self.plain.len() + if self.quaternion.is_some() { 9 } else { 0 }
     }
-    // Products repeat the measured columns, so doubt is judged without them.
 
     /// Returns the name of a feature, for messages.
     pub fn name(&self, feature: usize, inputs: &[String]) -> String {

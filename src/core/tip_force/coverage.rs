@@ -52,7 +52,6 @@ impl ValueSpan {
 
     /// Returns the width of the range; zero before the first value.
     pub const fn width(&self) -> f32 {
-        // degrees from straight down.
         (self.high - self.low).max(0.0)
     }
 }

@@ -2,8 +2,10 @@
 
 /// UDP port of the sensor.
 pub const PORT: u16 = 49_152;
+// First bytes of every request.
 const HEADER: u16 = 0x1234;
 pub const REQUEST_BYTES: usize = 8;
+// Three numbers and six counts of four bytes each.
 pub const RECORD_BYTES: usize = 36;
 
 /// A command to the sensor.

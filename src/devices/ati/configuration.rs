@@ -9,6 +9,7 @@ use std::{
 use super::AtiSettings;
 use crate::{DeviceError, DeviceIdentity, transport::check_no_example};
 
+// For the connection, and for the whole page.
 const TIMEOUT: Duration = Duration::from_secs(2);
 /// Maximum length of the page, bytes; real ones have about 10 kB.
 const PAGE_MAX: u64 = 256 << 10;
@@ -115,6 +116,7 @@ fn page(place: &str) -> Result<String, DeviceError> {
     let address = place.to_socket_addrs().map_err(trouble)?.next();
     let address = address.ok_or_else(|| DeviceError::Unreachable { place: place.to_owned() })?;
     let mut stream = TcpStream::connect_timeout(&address, TIMEOUT).map_err(trouble)?;
+    // A pause of this length ends a page whose connection stays open.
     stream.set_read_timeout(Some(TIMEOUT / 4)).map_err(trouble)?;
     stream.set_write_timeout(Some(TIMEOUT)).map_err(trouble)?;
     stream.write_all(format!("GET /{PAGE} HTTP/1.0\r\nHost: {place}\r\n\r\n").as_bytes()).map_err(trouble)?;

@@ -207,6 +207,7 @@ impl Device for AtiDriver {
 
 impl Drop for AtiDriver {
     fn drop(&mut self) {
+        // Otherwise the sensor would send until it is switched off.
         self.line.send(&RdtCommand::Stop.encode()).ok();
     }
 }

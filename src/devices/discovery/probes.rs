@@ -1,4 +1,4 @@
-//! A probe for each driver: opens the device like a rig and waits for it as long.
+//! A probe for each driver. It opens the device like a rig and waits for the same time.
 
 use std::time::Duration;
 

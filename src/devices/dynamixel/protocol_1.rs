@@ -6,6 +6,7 @@
 use super::opening::{REST_READS, WaitClock};
 use crate::{DeviceError, transport::ByteStream};
 
+// Instructions, and the id of all servos.
 const PING: u8 = 1;
 const READ: u8 = 2;
 const BROADCAST: u8 = 254;
@@ -42,6 +43,7 @@ fn ask(
 ) -> Result<Option<(u8, Vec<u8>)>, DeviceError> {
     let gone = |_| DeviceError::Other { place: port.to_owned(), reason: "the connection was lost".to_owned() };
     let mut buffer = [0; 64];
+    // Bytes that are still buffered could look like the answer.
     for _ in 0..REST_READS {
         if line.receive(&mut buffer).map_err(gone)? == 0 {
             break;
@@ -54,6 +56,7 @@ fn ask(
     line.send(&packet).map_err(gone)?;
     let begin_s = pace.now_s();
     let mut received = Vec::new();
+    // At most 512 bytes, because a disturbed line may send without end.
     while pace.now_s() - begin_s <= answer_s && received.len() < 512 {
         match line.receive(&mut buffer).map_err(gone)? {
             0 => pace.nap(),

@@ -33,7 +33,7 @@ pub struct KinovaSettings {
 impl Default for KinovaSettings {
     fn default() -> Self {
         Self {
-            // Without the factory's address: a rig or a test must not reach an arm that nobody named.
+            // Without the factory's address: a rig or a test must not reach an arm that is not in its settings.
             host: String::new(),
             tcp_port: 10_000,
             udp_port: 10_001,

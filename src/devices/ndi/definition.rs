@@ -46,7 +46,7 @@ impl NdiDefinition {
         Ok(Self(bytes))
     }
 
-    /// Creates a definition with this text in place of the geometry, which only an emulated unit accepts.
+    /// Creates a definition with this text instead of the geometry, which only an emulated unit accepts.
     pub fn emulated(text: &str) -> Self {
         let mut bytes = Box::new([0; DEFINITION]);
         bytes[..BEGIN.len()].copy_from_slice(BEGIN);

@@ -74,7 +74,7 @@ impl NdiSettings {
         let double = |k: &usize| self.tools[..*k].contains(&self.tools[*k]);
         if let Some(k) = (1..self.tools.len()).find(double) {
             let allowed =
-                "a different definition for each tool: the unit cannot tell two tools with one definition apart";
+                "a different definition for each tool: the unit cannot distinguish two tools with one definition";
             return Err(refuse(&format!("tools[{k}]"), self.tools[k].display().to_string(), allowed));
         }
         if self.tools.is_empty() && !self.wired {

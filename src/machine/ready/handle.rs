@@ -21,8 +21,8 @@ const TRAVEL_M: f64 = 0.010;
 /// Maximum angle between the requested and the measured direction, degrees: allows for a person's hand, and is nearer
 /// to this axis than to any other.
 const ASKEW_MAX_DEG: f64 = 40.0;
-// One direction is enough: a swapped axis or sign turns it by at least 90 degrees.
 /// The requested direction.
+/// One direction is enough: a swapped axis or sign turns it by at least 90 degrees.
 const WAY: ViewMove = ViewMove::Right;
 
 #[derive(Debug)]

@@ -105,7 +105,7 @@ impl FollowerThere {
             obstacle: far.is_obstructed.then_some(EngageBlocker::FarEnd),
             age_s: here.age_s,
             silent_s: now_s - received.at_s,
-            // The other machine checks the plausibility of its own devices.
+            // The other machine checks its devices for plausibility itself.
             raw: RawReadings { handle: here.raw.handle, ..RawReadings::NONE },
         })
     }

@@ -92,6 +92,7 @@ impl DeviceIdentities {
     fn whose(&self, part: RigPart, serial: &str) -> Option<(RigPart, Option<&str>)> {
         let is_it = |known: Option<&str>| known.is_some_and(|known| same_serial(known, serial));
         let others = || RigPart::ALL.into_iter().filter(|other| *other != part && other.kind() == part.kind());
+        // A number in the rig file is the most certain one; the last check counts only for a part without it.
         if is_it(serial_of(&self.named, part)) {
             return None;
         }
@@ -134,7 +135,6 @@ impl DeviceIdentities {
             Ok(device) => device.about().1.serial.clone(),
             Err(DeviceError::OtherSerial { found, .. }) => found.clone(),
             Err(_) => return opened,
-            // The device's own number is the most certain name; the last check only counts for a part without one.
         };
         match self.whose(part, &serial) {
             None => opened,

@@ -7,7 +7,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// Beginning of a file in which the dialect is recognised, bytes.
 const HEAD: u64 = 1 << 16;
-/// Rows in which decimal commas are looked for.
+/// Number of rows that are searched for decimal commas.
 const ROWS: usize = 50;
 /// Separators with their names. A comma comes first, because it is the default; a space comes last, because it also
 /// follows other separators.
@@ -69,6 +69,21 @@ impl CsvDialect {
     /// Returns the line number in the file of a line that the reader counts.
     pub const fn line(&self, counted: u64) -> u64 {
         counted + self.removed
+    }
+
+    /// Rewrites a row with decimal points, and with its line number in the file.
+    pub fn normalise(&self, row: &mut StringRecord) {
+        if !self.has_decimal_comma && self.removed == 0 {
+            return;
+        }
+        let mut position = row.position().cloned();
+        if let Some(position) = &mut position {
+            position.set_line(self.line(position.line()));
+        }
+        if self.has_decimal_comma {
+            *row = row.iter().map(|field| field.replace(',', ".")).collect();
+        }
+        row.set_position(position);
     }
 
     /// Parses a number as this dialect writes it.

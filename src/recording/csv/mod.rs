@@ -355,7 +355,7 @@ mod tests {
             );
         }
         let kept = read("t_s", ["1764314756.0", "1764314756.25", "1764314756.5", "1764314756.75"], &[]).unwrap();
-        assert!((kept.samples[1].t_s - 1_764_314_756.25).abs() < 1e-6, "seconds stay as they are");
+        assert!((kept.samples[1].t_s - 1_764_314_756.25).abs() < 1e-6, "seconds stay unchanged");
         let unknown = read("t_s", ["1764314756000", "1764324756000", "1764334756000", "1764344756000"], &[]);
         assert!(unknown.is_err());
         let slash = read("date,time", ["11/28/2026,07:25:56", "", "", ""], &["t=date+time"]).unwrap_err().to_string();

@@ -168,7 +168,9 @@ impl CsvTable {
         if step_s == 0.0 {
             return RecordingError::SameTime { path, line, now_s };
         }
-        RecordingError::ClockSet { path, line, before_s, now_s, back_s: -step_s }
+        // Rounded to microseconds for the message.
+        let back_s = (-step_s * 1e6).round() / 1e6;
+        RecordingError::ClockSet { path, line, before_s, now_s, back_s }
     }
 
     pub(super) fn unknown_unit(&self, column: &CsvColumn, unit: &'static str, rate_hz: f64) -> RecordingError {

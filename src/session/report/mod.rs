@@ -233,7 +233,7 @@ struct ReportChannel {
     columns: Option<TopicColumns>,
 }
 
-/// One pass over the file.
+/// Reads the file once.
 struct FilePass<'a> {
     reader: &'a SessionReader,
     first_ns: u64,

@@ -131,3 +131,43 @@ fn opened<C: Copy>(channel: &mut Option<C>, open: impl FnOnce() -> Result<C, Wri
         None => Ok(*channel.insert(open()?)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use nima_recording::session::SessionWriter;
+
+    use super::*;
+
+    /// Sends two thousand images in a second.
+    #[derive(Debug)]
+    struct Fast(u32, ImageCoding);
+
+    impl RecordedImageSource for Fast {
+        fn image(&mut self) -> Option<PendingImage> {
+            let number = self.0;
+            self.0 += 1;
+            let camera_s = Some(f64::from(number) * 5e-4);
+            let image = PendingImage { arrived: Instant::now(), camera_s, coding: self.1, data: vec![1; 10] };
+            (number < 2000).then_some(image)
+        }
+
+        fn dropped(&self) -> u64 {
+            0
+        }
+    }
+
+    #[test]
+    fn a_camera_that_sends_too_much_does_not_fill_the_disk() {
+        let folder = tempfile::tempdir().unwrap();
+        for (coding, written) in [(ImageCoding::Jpeg, 120..=133), (ImageCoding::H264, 2000..=2000)] {
+            let file = SessionWriter::create(&folder.path().join(coding.name()), "test").unwrap();
+            let mut out = SessionSinks::of(file);
+            let mut channel = ImageChannel::new(Box::new(Fast(0, coding)));
+            channel.until(&mut out, 2.0, |taken| taken.camera_s, |t_s| (t_s * 1e9) as u64).unwrap();
+            let [number, left_out] = channel.counts();
+            assert!(written.contains(&number) && number + left_out == 2000, "{number}, {left_out}");
+        }
+    }
+}

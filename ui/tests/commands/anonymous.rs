@@ -223,7 +223,7 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
         let tables = SessionReader::open(Path::new(&session)).unwrap().metadata().unwrap();
         let day = tables.iter().find_map(|(_, table)| Some(table.get("started")?[..10].to_owned())).unwrap();
         assert!(!contains(&bytes, day.as_bytes()), "{day}");
-        // As in a message's time stamp: seconds in 32 bits.
+        // A message's time stamp has its seconds in 32 bits.
         let second = i32::try_from(begin_ns / 1_000_000_000).unwrap().to_le_bytes();
         assert!(!contains(&bytes, &second), "{}", path.display());
         assert_eq!(path.metadata().unwrap().modified().unwrap(), UNIX_EPOCH);

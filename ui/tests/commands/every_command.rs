@@ -218,7 +218,7 @@ fn identify_refuses_bad_recordings_and_writes_nothing() {
     refuse(&good, &["--map", "x=px"], &["px", "t_s, x_m, fx_n"]);
     refuse(&good, &["--map", "w=px"], &["w=px"]);
     refuse(&nan, &[], &["line 702", "NaN"]);
-    refuse(&back, &[], &["line 802", "time does not increase"]);
+    refuse(&back, &[], &["line 802", "the time steps back by 0.699 s", "split the file"]);
     refuse(&short, &[], &["200 samples", "300 ms"]);
     refuse(&good, &["--window-ms", "2"], &["window"]);
     refuse(&good, &["--delay-ms", "5000"], &["delay"]);

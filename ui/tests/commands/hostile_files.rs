@@ -277,7 +277,7 @@ fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
     assert!(refuse(&fifo).contains("a pipe exists and is never replaced"));
     assert!(refuse(&folder.link("to nothing", "nowhere")).contains("a link to a file that does not exist"));
     assert!(refuse(&folder.text(".")).contains("a folder exists"));
-    // A device like /dev/null; only root can create one.
+    // Only root can create a device like /dev/null.
     let device = folder.text("null");
     if Command::new("mknod")
         .args([&device, "c", "1", "3"])

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::report_text::{has_text, literals, of_extras, sources};
 
-/// Texts that are the same in both languages: names, abbreviations, terms that German engineers use as they are.
+/// Texts that are the same in both languages: names, abbreviations, terms that German engineers use unchanged.
 const SAME: [&str; 29] = [
     "Alarm",
     "Ctrl ",

@@ -36,7 +36,7 @@ fn bash_completes_commands_options_and_values() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("nima");
     fs::write(&file, script).unwrap();
-    // As bash calls it: the words so far, of which the last is incomplete.
+    // Bash passes the arguments so far; the last one is incomplete.
     let completed = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
         let quoted: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();

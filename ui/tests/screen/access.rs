@@ -189,7 +189,7 @@ fn disorder(stops: &[(String, Rect)], room: Rect) -> Vec<String> {
 fn the_keyboard_goes_through_the_top_bar_and_every_panel_as_they_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = begin("bimanual", folder.path());
-    // So that the step button next to the stop button can be pressed.
+    // The step button next to the stop button is enabled only after a stop.
     press(&mut console, "Stop");
     until(&mut console, "stopped", |tick| tick.state == LoopState::Stopped);
     console.run_steps(30);

@@ -7,7 +7,7 @@ use crate::units;
 const MASS_MAX_KG: f64 = 10.0;
 /// Maximum distance of the tool's centre of mass from the sensor, m: the middle of the longest shaft.
 const LEVER_MAX_M: f64 = 0.5;
-/// Distances of a centre of mass that are usual, m, by which a unit is recognised.
+/// Usual distances of a centre of mass, m; they reveal a wrong unit.
 const LEVER_USUAL_M: std::ops::Range<f64> = 0.005..0.3;
 /// Maximum deviation of the fitted mass from the weighed one, as a fraction of it.
 const WEIGHED_FRACTION: f64 = 0.1;

@@ -20,8 +20,8 @@ use super::{EnergyMode, Reason};
 /// with [`LEAK_S`], 15 mW: in 100 million adversarial requests the most in 2 s was 58 mJ, without gates 43 J
 /// (`docs/results/release.md`).
 pub const ALLOWANCE_J: f64 = 0.030;
-// Limits what a long compression of tissue may return: 200 mJ are 5 N over 40 mm.
 /// Maximum energy stored for the hand to get back, J.
+/// Limits what a long compression of tissue may return: 200 mJ are 5 N over 40 mm.
 pub const MAX_J: f64 = 0.200;
 /// Time constant with which a surplus or a debt returns to the allowance, s. Without it, integration errors would
 /// accumulate over a session.
@@ -62,6 +62,7 @@ impl<const D: usize> Energy<D> {
         let travel_m = if travel_m.norm() <= JUMP_M_S * dt_s { travel_m } else { SVector::zeros() };
         // Low-pass of travel over time, arranged so that it never divides by zero time.
         self.hand_m_s += (travel_m - self.hand_m_s * dt_s) / (SMOOTHING_S + dt_s);
+        // At most the whole difference, also after a long gap.
         let leak = (dt_s / LEAK_S).min(1.0);
         self.stored_j += (ALLOWANCE_J - self.stored_j) * leak - held_n.dot(&travel_m);
         // A debt is limited like a credit: otherwise a long error could close the gate for the rest of a session.
@@ -133,7 +134,6 @@ mod tests {
         assert!(held_j < 1.3 * ALLOWANCE_J, "{held_j} J");
     }
 
-    // At most the whole difference, also after a long gap.
     #[test]
     fn a_spring_that_gives_back_what_it_took_is_never_touched() {
         let mut gate = Energy::<1>::new(EnergyMode::Control);

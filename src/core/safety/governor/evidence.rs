@@ -14,7 +14,6 @@ use super::{
 /// Largest acceleration of a hand, m/s^2: a minimum-jerk motion of 35 mm in 0.2 s has 5.05 (5.77 d / T^2, Flash and Hogan 1985),
 /// and a soft grip overshoots by a fifth.
 const HAND_M_S2: f64 = 6.0;
-// See `HAND_M_S2`: 60 d / T^3 for 35 mm in 0.2 s.
 /// Largest jerk of a hand, m/s^3: the same motion has 262 (60 d / T^3).
 const HAND_M_S3: f64 = 300.0;
 /// Fractions of these limits that are rare, chosen for less than one false alarm per hour with the hands of `nima study
@@ -31,11 +30,11 @@ pub(super) const MASS_OFF: f64 = 0.25;
 pub(super) const OUT_M_S: f64 = 0.008;
 /// Time that a grip of 400 N/m with 0.25 kg takes to respond to a change of the force, s.
 const ANSWER_S: f64 = 0.020;
-// Half: a handle with twice the assumed mass still passes.
 /// Fraction of the speed that the force gives a lone handle after a step.
+/// Half: a handle with twice the assumed mass still passes.
 const DRIVEN: f64 = 0.5;
-// Above the error of the mass (`MASS_OFF`), so that a handle without a hand always counts as lost.
 /// A hand that carries less than this fraction of a force has lost it.
+/// Above the error of the mass (`MASS_OFF`), so that a handle without a hand always counts as lost.
 const LOST: f64 = 0.4;
 /// Fraction of the force that a hand carried before a step counts as one.
 const CARRIED: f64 = 0.5;

@@ -46,8 +46,8 @@ const BRAKE_OF_MASS: f64 = 0.15;
 /// Below this speed nothing is braked, m/s. The estimated velocity of a handle at rest has noise of this size, and a
 /// brake on noise is felt as vibration.
 const STILL_M_S: f64 = 2e-3;
-// Design choice: shorter windows have larger errors, longer ones find a coasting handle later.
 /// Windows for judging the hand's force while no force is applied, s. The long one serves scattered readings, once enough time has passed.
+/// Design choice: shorter windows have larger errors, longer ones find a coasting handle later.
 const JUDGED_S: f64 = 0.009;
 const JUDGED_LONG_S: f64 = 0.028;
 /// Time after which a soft grip (400 N/m, 8 N s/m) pulls a handle by more than friction when the force has vanished, s.

@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 use super::Fall;
 
-// Design choice: each further sample reports a real jump one period later; fewer turn single spikes into faults.
 /// Number of consecutive samples that are bridged; the next one is a jump.
+/// Design choice: each further sample reports a real jump one period later; fewer turn single spikes into faults.
 const BRIDGED: u32 = 2;
 /// This many bridged samples, minus one for each [`CALM`] good samples, are no longer treated as spikes: the fourth
 /// spike in a hundred samples is a fault (`docs/results/faults.md`).

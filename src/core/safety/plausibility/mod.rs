@@ -235,6 +235,7 @@ impl Plausibility {
             ReadingFault::Saturated => Implausible::ForceSaturated,
             ReadingFault::Repeats => Implausible::ForceRepeats,
         };
+        // The order is the priority: a wrong sensor explains a force along the motion, not the reverse.
         let doubts = [
             force_jumped.then_some(Implausible::ForceJumped),
             seen.raw.sensor.and(self.sensor.wrong()).map(of_sensor),
@@ -245,7 +246,6 @@ impl Plausibility {
             seen.raw.arm.and(self.arm.wrong()).map(|_| Implausible::ArmRepeats),
             self.handle_stuck.is_stuck().then_some(Implausible::HandleFrozen),
             self.arm_is_astray(seen).then_some(Implausible::ArmAstray),
-            // The order above is the priority: a wrong sensor explains a force along the motion, not the reverse.
         ];
         self.doubt = doubts.into_iter().flatten().next();
         AdmittedReadings { force_n, tip_m, hand_m }
@@ -255,9 +255,9 @@ impl Plausibility {
     fn pass(&mut self, t_s: f64) -> f64 {
         let dt_s = t_s - self.last_t_s;
         self.last_t_s = t_s;
+        // Also false for NaN times, which then count as a gap.
         if dt_s > 0.0 && dt_s <= GAP_S {
             return dt_s;
-            // Also false for NaN times, which then count as a gap.
         }
         // After a gap or a change of the clock, the possible travel is unknown. The value properties of a device remain
         // known.
@@ -363,8 +363,8 @@ impl Plausibility {
     }
 }
 
-// The order of `RawReading::of_sensor`: force, torque, acceleration.
 /// Number of channels of a force sensor that are forces or torques; the others are accelerations.
+/// The order of `RawReading::of_sensor`: force, torque, acceleration.
 const LOADS: usize = 6;
 
 /// Returns how long a device may have moved since its last reading, s; `None` if its reading is not new. If a device

@@ -23,8 +23,8 @@ const ALONG: f64 = 0.7;
 /// A touch that cannot be judged within this time is not judged at all, s. Design choice, with no false alarm in 136
 /// healthy minutes (`docs/results/faults.md`).
 const WITHIN_S: f64 = 0.3;
-// Two periods at 1 kHz: removes the noise of single samples, and stays far below the duration of a touch.
 /// Time constant against noise, s.
+/// Two periods at 1 kHz: removes the noise of single samples, and stays far below the duration of a touch.
 const SMOOTHING_S: f64 = 0.002;
 /// The touch was caused by the tip if it travelled this far before, m, within about this time, s: faster than 5 mm/s. A
 /// tremor of 0.15 mm per axis moves back and forth by half of that.

@@ -57,8 +57,8 @@ impl RawReading<CHANNELS> {
     }
 }
 
-// 16 intervals: 16 ms at 1 kHz, long enough to average one late poll, short enough to follow a changed rate.
 /// Number of readings over which the usual interval is averaged.
+/// 16 intervals: 16 ms at 1 kHz, long enough to average one late poll, short enough to follow a changed rate.
 const AVERAGED: f64 = 16.0;
 /// A longer interval counts as this many nominal ones: the loop was late and missed the readings in between.
 const LONGEST_INTERVALS: f64 = 2.0;

@@ -1,6 +1,6 @@
 //! The events that become markers, and their texts.
 //!
-//! A marker is a few words that a program can split at spaces: event, side, and numbers. It contains nothing about the
+//! A marker is a short text that a program can split at spaces: event, side, and numbers. It contains nothing about the
 //! rendering of forces.
 
 use nima_core::safety::InterlockState;

@@ -124,15 +124,16 @@ impl UserStudy {
         let secret_text = String::from_utf8(plain).map_err(|_| unreadable())?;
         let scene = text(SCENE)?;
         let now = RuleHashes { study: StudyPlan::hash_of(&rules), scene: seal::hash(scene.as_bytes()) };
-        if let (true, Some(RuleHashes { study, scene })) = (plan.is_bound(), secret.rules().or(Some(&RuleHashes::NONE)))
-        {
-            for (name, committed, now) in [(PLAN, study, &now.study), (SCENE, scene, &now.scene)] {
-                if committed != now {
-                    let why =
-                        "it was changed after the study was created: the commitment covers it; restore it from a copy";
-                    return Err(damaged(name, why.to_owned()));
-                }
-            }
+        // A file that pretends to be of an older version differs from its hash too.
+        let none = RuleHashes::NONE;
+        let rules = secret.rules().or_else(|| plan.is_bound().then_some(&none));
+        let changed = rules.and_then(|rules| {
+            let pairs = [(PLAN, &rules.study, &now.study), (SCENE, &rules.scene, &now.scene)];
+            pairs.into_iter().find(|(_, committed, now)| committed != now)
+        });
+        if let Some((name, ..)) = changed {
+            let why = "it was changed after the study was created: the commitment covers it; restore it from a copy";
+            return Err(damaged(name, why.to_owned()));
         }
         let state = StudyState::new(&plan);
         let chain = Chain::NONE;

@@ -209,7 +209,7 @@ fn a_trial_with_force_reads_like_one_without() {
         let mut study = made(folder.path(), &format!("record = true\n{TWO}"));
         for number in 0..6 {
             let running = study.begin_trial("P01", true, AT).unwrap();
-            // As much as is left of one after compression.
+            // This size remains of a session after compression.
             fs::write(running.session().unwrap(), vec![7; session + number]).unwrap();
             if number == 5 {
                 study.abort_trial(running, "the loop ended in a fault", Some(details), AT).unwrap();
@@ -287,6 +287,7 @@ fn the_commitment_covers_the_rules_of_the_study() {
     for (name, from, to) in [
         ("study.toml", "primary = \"completion_time_s\"", "primary = \"trial_time_s\""),
         ("study.toml", "attempts = 3", "attempts = 4"),
+        ("study.toml", "version = 3", "version = 2"),
         ("scene.toml", "scene", "arena"),
     ] {
         let whole = fs::read_to_string(place(name)).unwrap();

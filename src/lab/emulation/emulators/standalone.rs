@@ -11,7 +11,7 @@ use std::{
 #[derive(Debug, Default)]
 pub struct EmulatorSettings {
     given: Vec<(String, String)>,
-    /// Keys that the devices have, in the order in which they were asked for.
+    /// Keys that the devices have, in the order of the requests.
     known: RefCell<Vec<String>>,
 }
 

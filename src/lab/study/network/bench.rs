@@ -304,7 +304,7 @@ fn measure([console, follower]: &mut [NetworkEnd; 2], [there, back]: &mut [Impai
             end.arrive(&bytes, came_s + ahead_s);
         }
         end.receive(now_s + ahead_s, &mut |_| {});
-        // As long as a typical message from the follower.
+        // A typical message from the follower has this length.
         end.send(now_s + ahead_s, &[0xff; 40]);
         end.out.drain(..).for_each(|bytes| to.send(now_s, &bytes));
     };

@@ -109,7 +109,7 @@ pub struct TradeoffPlan {
     pub solvers: Vec<LeastSquaresSolver>,
     /// Number of instants at which each solver is evaluated.
     pub instants: usize,
-    /// Passes over the source for each point of a mode; the minimum time counts as its cost.
+    /// Number of runs over the source for each point of a mode; the minimum time counts as its cost.
     pub passes: usize,
 }
 

@@ -46,11 +46,11 @@ impl<L: Link> Pair<L> {
             }
             Command::Prompt(_, prompt) => return self.prompt(prompt),
             Command::Guide(_, guide_m) => {
+                // Nothing may move while a stop or a fault is latched.
                 self.is_not_latched()?;
                 let coordinates_m = guide_m.iter().flat_map(|position_m| position_m.iter());
                 all_within(-GUIDE_MAX_M..=GUIDE_MAX_M, coordinates_m)?;
                 self.screen.guide_m = guide_m;
-                // Nothing may move while a stop or a fault is latched.
             }
             Command::Grip(_, grip_rad) => {
                 self.has_simulated_hand()?;
@@ -161,8 +161,8 @@ impl<L: Link> Pair<L> {
             self.may_release(t_s)?;
             self.ask(InterlockRequest::Release, t_s)?;
         }
-        self.releases = self.releases.wrapping_add(1);
         // A count, so that a lost or repeated message neither loses nor repeats a release.
+        self.releases = self.releases.wrapping_add(1);
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use std::io::{self, Read as _};
 
 use lz4_flex::frame::FrameDecoder;
+use ruzstd::decoding::StreamingDecoder;
 
 use super::{parse, source::ReaderSource};
 use crate::session::{
@@ -17,6 +18,10 @@ pub(super) struct ReaderChunk {
 
 /// One LZ4 byte expands to at most this many bytes; a chunk that claims more is rejected.
 const MAX_FOR_A_BYTE: u64 = 255;
+/// Zstandard, in which `ros2 bag` and other programs compress.
+const ZSTD: &str = "zstd";
+/// Maximum length of a chunk in Zstandard, in which a few bytes can stand for any number of equal ones.
+const ZSTD_MAX: u64 = 256 << 20;
 
 /// Reads the chunk at this position, or returns what is wrong with it.
 pub(super) fn read(source: &ReaderSource, at: u64, length: u64) -> io::Result<Result<ReaderChunk, String>> {
@@ -44,6 +49,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     let max = match head.compression.as_str() {
         "" => compressed.len() as u64,
         LZ4 => compressed.len() as u64 * MAX_FOR_A_BYTE,
+        ZSTD => ZSTD_MAX,
         other => {
             let other = nima_files::quoted(other);
             return Err(format!("it is compressed with {other}; convert the file: mcap compress --compression lz4"));
@@ -55,14 +61,20 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     // Allocate only for a likely compression ratio at first, whatever the chunk claims.
     let likely = head.uncompressed.min(8 * compressed.len() as u64);
     let mut records = Vec::with_capacity(likely as usize);
-    if head.compression.is_empty() {
-        records.extend_from_slice(compressed);
-    } else {
-        let mut decoder = FrameDecoder::new(compressed);
-        // One byte more than stated, so that longer data are noticed.
-        let read = decoder.by_ref().take(head.uncompressed + 1).read_to_end(&mut records);
-        read.map_err(|error| format!("it cannot be decompressed: {error}"))?;
-    }
+    // One byte more than stated, so that longer data are noticed.
+    let failed = |error: &dyn std::fmt::Display| format!("it cannot be decompressed: {error}");
+    let read = match head.compression.as_str() {
+        "" => {
+            records.extend_from_slice(compressed);
+            Ok(records.len())
+        }
+        ZSTD => {
+            let decoder = StreamingDecoder::new(compressed).map_err(|error| failed(&error))?;
+            decoder.take(head.uncompressed + 1).read_to_end(&mut records)
+        }
+        _ => FrameDecoder::new(compressed).take(head.uncompressed + 1).read_to_end(&mut records),
+    };
+    read.map_err(|error| failed(&error))?;
     if records.len() as u64 == head.uncompressed {
         Ok(records)
     } else {
@@ -79,4 +91,28 @@ pub(super) fn records(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8], usize)> 
         left = behind;
         Some((kind, content, at))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+
+    use super::*;
+
+    #[test]
+    fn a_chunk_in_zstandard_is_read_and_a_wrong_length_refused() {
+        let records: Vec<u8> = (0..5000_u32).flat_map(u32::to_le_bytes).collect();
+        let compressed = compress_to_vec(&records[..], CompressionLevel::Fastest);
+        let head = |uncompressed: u64| parse::ChunkHead {
+            times_ns: (0, 1),
+            uncompressed,
+            crc: 0,
+            compression: ZSTD.to_owned(),
+        };
+        assert_eq!(decompress(&head(records.len() as u64), &compressed), Ok(records.clone()));
+        for wrong in [0, records.len() as u64 - 1, records.len() as u64 + 1, u64::MAX] {
+            assert!(decompress(&head(wrong), &compressed).is_err(), "{wrong}");
+        }
+        assert!(decompress(&head(records.len() as u64), &compressed[..compressed.len() / 2]).is_err());
+    }
 }

@@ -86,8 +86,8 @@ impl<'a> ReaderMessages<'a> {
         let may_hold = |one: &&contents::ContentsMessages| {
             let (first, last) = one.times_ns;
             let theirs = wanted.as_ref().is_none_or(|wanted| {
-                one.channels.is_empty() || one.channels.iter().any(|channel| wanted.contains(channel))
                 // A file without an index of messages does not state the channels of its chunks.
+                one.channels.is_empty() || one.channels.iter().any(|channel| wanted.contains(channel))
             });
             theirs && first < times_ns.end && last >= times_ns.start
         };

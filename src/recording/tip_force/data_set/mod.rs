@@ -13,14 +13,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::StringRecord;
 use nima_core::tip_force::{
     DEFAULT_INPUTS, DEFAULT_OUTPUTS, DerivedInput, Expansion, ForceModel, MAX_FEATURES, MAX_OUTPUTS,
 };
 use nima_files::{PASSAGE, quoted, shortened};
 
 use self::hashed::{FNV_START, HashingReader};
-use crate::tip_force::TipForceError;
+use crate::{
+    csv::{Comments, CsvDialect, recognise},
+    tip_force::TipForceError,
+};
 
 /// Columns to use; `None` selects the default ones.
 #[derive(Clone, Debug, Default)]
@@ -97,11 +100,11 @@ impl DataSet {
         let mut histories = Vec::new();
         for source in sources {
             let (path, from) = source?;
-            let open = |error: csv::Error| TipForceError::Open { path: path.clone(), reason: error.to_string() };
+            let open = |reason: String| TipForceError::Open { path: path.clone(), reason };
             let mut hash = FNV_START;
             let hashed = HashingReader { from, hash: &mut hash };
-            let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(hashed);
-            let header = reader.headers().map_err(open)?.clone();
+            let (dialect, text) = recognise(hashed, Comments::Skipped).map_err(open)?;
+            let (mut reader, header) = dialect.reader(text).map_err(open)?;
             if set.is_none() {
                 let chosen = Self::chosen(selection, &header);
                 check_columns(&chosen)?;
@@ -109,7 +112,7 @@ impl DataSet {
                 set = Some(chosen);
             }
             if let Some(set) = &mut set {
-                set.append(&path, &header, &mut reader, &mut histories)?;
+                set.append(&path, &header, (&dialect, &mut reader), &mut histories)?;
                 set.hashes.push(format!("{hash:016x}"));
             }
         }
@@ -158,7 +161,7 @@ impl DataSet {
         &mut self,
         path: &Path,
         header: &StringRecord,
-        reader: &mut csv::Reader<impl io::Read>,
+        (dialect, reader): (&CsvDialect, &mut csv::Reader<impl io::Read>),
         histories: &mut [DataSetHistory],
     ) -> Result<(), TipForceError> {
         let find = |name: &str| column(path, header, name);
@@ -183,6 +186,7 @@ impl DataSet {
         let mut record = StringRecord::new();
         let wrong = |error: csv::Error| TipForceError::Open { path: path.to_owned(), reason: error.to_string() };
         while reader.read_record(&mut record).map_err(wrong)? {
+            dialect.normalise(&mut record);
             let row = self.rows();
             let id = trajectory.map(|index| number(path, header, &record, index)).transpose()?.map(f32::to_bits);
             if row > first && id != last {
@@ -267,7 +271,15 @@ fn parsed(name: &str) -> Result<Option<DerivedInput>, TipForceError> {
 }
 
 fn column(path: &Path, header: &StringRecord, name: &str) -> Result<usize, TipForceError> {
-    header.iter().position(|found| found == name).ok_or_else(|| TipForceError::NoColumn {
+    let mut places = header.iter().enumerate().filter(|(_, found)| *found == name).map(|(place, _)| place);
+    let found = places.next();
+    if let (Some(first), Some(second)) = (found, places.next()) {
+        let (first, second) = (first + 1, second + 1);
+        let reason =
+            format!("\"{}\" is the name of two columns of {} ({first} and {second})", quoted(name), path.display());
+        return Err(TipForceError::Columns { reason });
+    }
+    found.ok_or_else(|| TipForceError::NoColumn {
         path: path.to_owned(),
         column: quoted(name),
         available: shortened(&header.iter().collect::<Vec<_>>().join(", "), PASSAGE),
@@ -357,6 +369,16 @@ mod tests {
         assert!(message("midline:f:x:0.5").contains("reverses"));
         assert!(message("presliding:x").contains("presliding:POSITION:WIDTH"));
         assert!(message("presliding:z:1").contains("no column \"z\""));
+    }
+
+    #[test]
+    fn other_dialects_are_read_and_a_column_that_stands_twice_is_refused() {
+        let set = read(&["sep=;\na;b\n1,5;2\n3;4,25\n"], "a", "b").unwrap();
+        assert_eq!((set.x, set.y), (vec![1.5, 3.0], vec![2.0, 4.25]));
+        let wrong = read(&["sep=;\na;b\n1,5;2\n3;x\n"], "a", "b").unwrap_err().to_string();
+        assert!(wrong.contains("line 4"), "{wrong}");
+        let twice = read(&["a,a,b\n1,2,3\n"], "a", "b").unwrap_err().to_string();
+        assert!(twice.contains("the name of two columns") && twice.contains("(1 and 2)"), "{twice}");
     }
 
     #[test]

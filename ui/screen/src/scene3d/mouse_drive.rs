@@ -175,7 +175,7 @@ impl MouseDrive {
         self.is_on()
     }
 
-    /// Restarts the trial by its key, whoever drives the instruments; a participant of a study cannot.
+    /// Restarts the trial by its key, whether or not the mouse drives an instrument; a participant of a study cannot.
     pub(super) fn restart_by_key(&mut self, ui: &Ui, live: &LiveState, outbox: &mut Outbox) {
         let runs = matches!(live.state(), LoopState::Idle | LoopState::Engaged);
         if !self.restarts(live) || !runs || ui.ctx().text_edit_focused() {

@@ -1,10 +1,11 @@
-//! Motion and force from a user's file: a table (CSV), or an arm of a recorded session.
+//! Motion and force from a user's file: a table (CSV), an arm of a recorded session, or topics of a recording of ROS 2.
 
 use std::{fs::File, io::Read as _, path::Path};
 
 use anyhow::bail;
 use nima_machine::rig::Side;
 use nima_recording::{
+    bag,
     csv::{ColumnMapping, CsvRecording},
     session::SessionReader,
 };
@@ -33,18 +34,34 @@ pub(super) fn read_with_leader(path: &Path, map: &[String], arm: Option<Side>) -
         }
         return Ok(CsvRecording::read(path, &mapping)?);
     }
-    if !map.is_empty() {
-        bail!("--map applies only to tables, and {} is a session: omit it", path.display());
+    if path.is_dir() {
+        return Ok(bag::read(path, &mapping)?);
     }
-    report_missing(path, &SessionReader::open(path)?);
+    let reader = SessionReader::open(path)?;
+    if plot_channels::arms(&reader).is_empty() && (bag::is_bag(&reader) || !map.is_empty()) {
+        if arm.is_some() {
+            bail!(
+                "--arm applies only to sessions of this program, and {} is another recording: omit it",
+                path.display()
+            );
+        }
+        return Ok(bag::read(path, &mapping)?);
+    }
+    if !map.is_empty() {
+        bail!(
+            "--map applies only to tables and other programs' recordings, and {} is a session: omit it",
+            path.display()
+        );
+    }
+    report_missing(path, &reader);
     Ok(plot_channels::recording(path, arm)?)
 }
 
-/// Detects a session by its name or by its first bytes. A pipe is not touched: data read from it are lost.
+/// Detects a session or another recording (MCAP, or the folder of a bag) by its name or by its first bytes. A pipe is not touched: data read from it are lost.
 fn is_session(path: &Path) -> bool {
     let begins_so = || {
         let mut bytes = [0; MAGIC.len()];
         path.is_file() && File::open(path).and_then(|mut file| file.read_exact(&mut bytes)).is_ok() && bytes == MAGIC
     };
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) || begins_so()
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) || path.is_dir() || begins_so()
 }

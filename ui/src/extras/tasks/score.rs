@@ -52,7 +52,7 @@ struct ScoredSession {
     session: String,
     condition: String,
     task: String,
-    /// What the file lacks; empty for a whole session.
+    /// Data that the file lacks; empty for a whole session.
     missing: Vec<String>,
     #[serde(flatten)]
     score: Score,

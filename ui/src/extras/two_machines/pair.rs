@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &PairArguments) -> anyhow::Result<()> {
         let at = network::listening(arguments.listen.as_deref())?;
         output::line(&format!("waiting at {at} for `nima pair HOST` on the console's machine"))?;
         let show = |code| {
-            // If the output is closed, nobody can read the code, and the offer ends when its time is over.
+            // If the output is closed, the code is not shown, and the offer ends when its time is over.
             output::line(&format!("code to enter on the console's machine: {code}")).ok();
         };
         (arguments.name.as_str(), pairing.offer(at, show)?)

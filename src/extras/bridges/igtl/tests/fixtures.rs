@@ -1,4 +1,4 @@
-//! Messages as written by the reference library: facts of the protocol, from the vectors of its own tests (The
+//! Messages as written by the reference library: facts of the protocol, from the vectors of the library's tests (The
 //! `OpenIGTLink` Library, 3-clause BSD licence), as listed by the project openigtlink-ng.
 
 #[rustfmt::skip]

@@ -25,7 +25,7 @@ pub const RECIPES: [(&str, Recipe); 5] = [
 /// With all corrections except the interpretation.
 pub const REPAIRED: Recipe = Recipe { choice: DegreeChoice::Next, constant: true, ridge: 3e-3, ..PRINTED };
 
-/// Results inside the window: fits judged on the newest sample of their own window, all axes alike.
+/// Results inside the window: fits judged on the newest sample of the window that they use, all axes alike.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct InWindow {
     /// The degree chosen by the error in the window, as the paper does.

@@ -1,0 +1,275 @@
+//! Reading motion and force from recordings of ROS 2 and other programs (MCAP), by topic and field:
+//! `x=/tool/pose.pose.position.x`.
+//!
+//! The messages of the force give the times; quantities of other topics are interpolated to them. Times are those in the
+//! messages' headers, else of the recording. Samples within a gap of another topic are left out.
+
+mod codec;
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use nalgebra::Vector3;
+use nima_core::impedance::Sample;
+use nima_files::{PASSAGE, quoted, shortened};
+
+use crate::{
+    csv::{AXIS_NAMES, ColumnMapping, CsvRecording, RecordingError},
+    session::{ReadError, SessionReader},
+};
+use codec::{BagField, examples};
+
+/// Encoding of the messages of ROS 2.
+const CDR: &str = "cdr";
+/// Maximum time between two messages of a topic over which is interpolated, s: three messages of a slow tracker.
+const GAP_S: f64 = 0.1;
+/// Minimum number of samples.
+const MIN_SAMPLES: usize = 3;
+
+#[derive(Debug, thiserror::Error)]
+pub enum BagError {
+    #[error("{0}")]
+    Read(#[from] ReadError),
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    #[error("cannot read recording {path}: {why}", path = .path.display())]
+    Folder { path: PathBuf, why: String },
+    #[error(
+        "recording {path} needs a topic and a field for each quantity, such as --map fz=/sensor/wrench.wrench.force.z; it has: {available}",
+        path = .path.display()
+    )]
+    NoMapping { path: PathBuf, available: String },
+    #[error("recording {path} has no \"{column}\" for --map {quantity}; it has: {available}", path = .path.display())]
+    NoField { path: PathBuf, quantity: String, column: String, available: String },
+    #[error("recording {path}: --map {quantity} is missing; a force and a position on each axis are needed", path = .path.display())]
+    NoQuantity { path: PathBuf, quantity: String },
+    #[error("recording {path}: topic {topic} has a message that cannot be read; record it again", path = .path.display())]
+    Message { path: PathBuf, topic: String },
+    #[error(
+        "recording {path}: only {found} samples have a force and a position within {GAP_S} s; record the topics at the same time and with one clock",
+        path = .path.display()
+    )]
+    TooShort { path: PathBuf, found: usize },
+}
+
+/// Values over time, of one quantity.
+struct Series {
+    times_ns: Vec<u64>,
+    values: Vec<f64>,
+}
+
+/// Returns whether a recording has messages of ROS 2 that can be read.
+pub fn is_bag(reader: &SessionReader) -> bool {
+    let is_readable = |schema: &str| !examples(schema).is_empty();
+    reader.channels().iter().any(|one| one.encoding.message_encoding == CDR && is_readable(&one.encoding.schema))
+}
+
+/// Reads motion and force with this mapping of quantities to `TOPIC.FIELD`. The path may be the folder of a bag.
+///
+/// # Errors
+/// [`BagError`] if the recording cannot be read, or lacks what is mapped.
+pub fn read(path: &Path, mapping: &ColumnMapping) -> Result<CsvRecording, BagError> {
+    let file = file_of(path)?;
+    let reader = SessionReader::open(&file)?;
+    if mapping.sources().next().is_none() {
+        return Err(BagError::NoMapping { path: path.to_owned(), available: available(&reader) });
+    }
+    let axes: Vec<usize> = (0..AXIS_NAMES.len()).filter(|axis| is_named(mapping, AXIS_NAMES[*axis])).collect();
+    let mut series = Vec::new();
+    for axis in &axes {
+        let name = AXIS_NAMES[*axis];
+        let position = read_series(&reader, path, mapping, &format!("{name}_m"))?;
+        let force = read_series(&reader, path, mapping, &format!("f{name}_n"))?;
+        series.push((position, force));
+    }
+    let samples = joined(&series);
+    if samples.len() < MIN_SAMPLES {
+        return Err(BagError::TooShort { path: path.to_owned(), found: samples.len() });
+    }
+    Ok(CsvRecording::of_samples(path, axes, samples)?)
+}
+
+fn is_named(mapping: &ColumnMapping, axis: &str) -> bool {
+    mapping.names(&format!("{axis}_m")) || mapping.names(&format!("f{axis}_n"))
+}
+
+/// Returns the file of a recording, which `ros2 bag` puts into a folder.
+fn file_of(path: &Path) -> Result<PathBuf, BagError> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let refused = |why: &str| BagError::Folder { path: path.to_owned(), why: why.to_owned() };
+    let entries = std::fs::read_dir(path).map_err(|error| refused(&error.to_string()))?;
+    let files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    let with = |ending: &str| files.iter().filter(|file| file.extension().is_some_and(|known| known == ending)).count();
+    match files.iter().find(|file| file.extension().is_some_and(|known| known == "mcap")) {
+        Some(file) if with("mcap") == 1 => Ok(file.clone()),
+        Some(_) => Err(refused("it has several .mcap files: name one of them")),
+        None if with("db3") > 0 => {
+            Err(refused("it is stored as SQLite (.db3): convert it with `ros2 bag convert` to the storage mcap"))
+        }
+        None => Err(refused("the folder has no .mcap file")),
+    }
+}
+
+/// Returns the topics that can be read, with their fields.
+fn available(reader: &SessionReader) -> String {
+    let mut topics = Vec::new();
+    for channel in reader.channels().iter().filter(|channel| channel.encoding.message_encoding == CDR) {
+        topics.extend(examples(&channel.encoding.schema).into_iter().map(|field| format!("{}.{field}", channel.topic)));
+    }
+    if topics.is_empty() {
+        return "no topic with a pose, a wrench, a transform or joint states in the encoding of ROS 2 (cdr)".to_owned();
+    }
+    shortened(&topics.join(", "), PASSAGE)
+}
+
+fn read_series(
+    reader: &SessionReader,
+    path: &Path,
+    mapping: &ColumnMapping,
+    quantity: &str,
+) -> Result<Series, BagError> {
+    if !mapping.names(quantity) {
+        return Err(BagError::NoQuantity { path: path.to_owned(), quantity: quantity.to_owned() });
+    }
+    let source = mapping.source(quantity);
+    let missing = || BagError::NoField {
+        path: path.to_owned(),
+        quantity: quantity.to_owned(),
+        column: quoted(source.column()),
+        available: available(reader),
+    };
+    // A topic has no point in its name.
+    let (topic, field) = source.column().split_once('.').ok_or_else(missing)?;
+    let topic = if topic.starts_with('/') { topic.to_owned() } else { format!("/{topic}") };
+    let channel = reader.channels().iter().find(|channel| {
+        channel.encoding.message_encoding == CDR && channel.topic.trim_start_matches('/') == &topic[1..]
+    });
+    let channel = channel.ok_or_else(missing)?;
+    let field = BagField::find(&channel.encoding.schema, field).ok_or_else(missing)?;
+    let mut values = BTreeMap::new();
+    for message in reader.messages(&[&channel.topic], 0..u64::MAX) {
+        let message = message?;
+        let (stamp_ns, value) = field
+            .read(message.data())
+            .ok_or_else(|| BagError::Message { path: path.to_owned(), topic: quoted(&channel.topic) })?;
+        values.insert(stamp_ns.unwrap_or_else(|| message.log_time_ns()), value * source.scale());
+    }
+    let (times_ns, values) = values.into_iter().unzip();
+    Ok(Series { times_ns, values })
+}
+
+impl Series {
+    /// Returns the value at a time, between two messages that are close enough.
+    fn at(&self, time_ns: u64) -> Option<f64> {
+        let next = self.times_ns.partition_point(|known| *known < time_ns);
+        let (&after_ns, &after) = (self.times_ns.get(next)?, self.values.get(next)?);
+        if after_ns == time_ns {
+            return Some(after);
+        }
+        let before = next.checked_sub(1)?;
+        let (&before_ns, &from) = (self.times_ns.get(before)?, self.values.get(before)?);
+        let step_s = (after_ns - before_ns) as f64 * 1e-9;
+        let share = (time_ns - before_ns) as f64 * 1e-9 / step_s;
+        (step_s <= GAP_S).then_some(from + share * (after - from))
+    }
+}
+
+/// Returns a sample for each message of the first axis' force at which all other quantities are known. Times count from
+/// the first one, s.
+fn joined(series: &[(Series, Series)]) -> Vec<Sample> {
+    let Some((_, base)) = series.first() else { return Vec::new() };
+    let mut samples: Vec<Sample> = Vec::new();
+    let mut first_ns = None;
+    for &time_ns in &base.times_ns {
+        let mut position_m = Vector3::zeros();
+        let mut force_n = Vector3::zeros();
+        let is_known = series.iter().enumerate().all(|(lane, (position, force))| {
+            let (Some(position), Some(force)) = (position.at(time_ns), force.at(time_ns)) else { return false };
+            position_m[lane] = position;
+            force_n[lane] = force;
+            true
+        });
+        if is_known {
+            let first_ns = *first_ns.get_or_insert(time_ns);
+            samples.push(Sample { t_s: (time_ns - first_ns) as f64 * 1e-9, position_m, force_n });
+        }
+    }
+    samples
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{codec::tests::CdrWriter, *};
+    use crate::session::{Encoding, SessionWriter};
+
+    fn encoding(schema: &str) -> Encoding {
+        Encoding {
+            schema: schema.to_owned(),
+            schema_encoding: "ros2msg".to_owned(),
+            schema_data: Vec::new(),
+            message_encoding: CDR.to_owned(),
+        }
+    }
+
+    /// Writes a bag with a force at 500 Hz and a pose at 100 Hz: the force is twice the position.
+    fn bag(path: &Path) {
+        let mut writer = SessionWriter::create(path, "ros2").unwrap();
+        let wrench = writer.channel("/ft/wrench", encoding("geometry_msgs/msg/WrenchStamped")).unwrap();
+        let pose = writer.channel("/tool/pose", encoding("geometry_msgs/msg/PoseStamped")).unwrap();
+        let begin_ns = 1_764_314_756_000_000_000_u64;
+        for tick in 0..500_u64 {
+            let time_ns = begin_ns + tick * 2_000_000;
+            let along = tick as f64 * 1e-4;
+            let stamped = || CdrWriter::new(false).header(time_ns);
+            let force = stamped().f64s(&[0.0, 0.0, 2.0 * along, 0.0, 0.0, 0.0]);
+            writer.message(wrench, time_ns + 700, &force.0).unwrap();
+            if tick % 5 == 0 {
+                let place = stamped().f64s(&[0.0, 0.0, along, 0.0, 0.0, 0.0, 1.0]);
+                writer.message(pose, time_ns + 900, &place.0).unwrap();
+            }
+        }
+        writer.finish().unwrap();
+    }
+
+    fn mapping(texts: &[&str]) -> ColumnMapping {
+        ColumnMapping::parse(texts).unwrap()
+    }
+
+    #[test]
+    fn topics_of_different_rates_become_one_recording() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        bag(&path);
+        assert!(is_bag(&SessionReader::open(&path).unwrap()));
+        let maps = mapping(&["z=/tool/pose.pose.position.z*1000", "fz=/ft/wrench.wrench.force.z"]);
+        for place in [path.as_path(), folder.path()] {
+            let recording = read(place, &maps).unwrap();
+            assert_eq!((recording.axes.as_slice(), recording.rate_hz), (&[2][..], 500.0));
+            assert!(recording.samples.len() > 490);
+            for sample in &recording.samples {
+                assert!((sample.force_n.x - 2e-3 * sample.position_m.x).abs() < 1e-9, "{sample:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_missing_is_named_with_what_there_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        bag(&path);
+        let refused = |texts: &[&str]| read(&path, &mapping(texts)).unwrap_err().to_string();
+        let none = refused(&[]);
+        assert!(none.contains("/tool/pose.pose.position.x") && none.contains("/ft/wrench.wrench.force.x"), "{none}");
+        let topic = refused(&["z=/other.pose.position.z", "fz=/ft/wrench.wrench.force.z"]);
+        assert!(topic.contains("/other.pose.position.z") && topic.contains("/tool/pose"), "{topic}");
+        assert!(refused(&["fz=/ft/wrench.wrench.force.z"]).contains("--map z_m is missing"));
+        let empty = tempfile::tempdir().unwrap();
+        assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("no .mcap file"));
+        std::fs::write(empty.path().join("bag_0.db3"), "").unwrap();
+        assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("ros2 bag convert"));
+    }
+}

@@ -1,4 +1,4 @@
-//! An arm that is not a Gen3, from its description: the example of an external arm as a UR5e.
+//! An arm that is not a Gen3, from its description: the example of an external arm as a `UR5e`.
 
 use nalgebra::Isometry3;
 use nima_core::kinematics::{Rcm, find};

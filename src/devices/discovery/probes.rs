@@ -9,8 +9,8 @@ use crate::{ati, bota, dynamixel, external, force_dimension, haply, hid, kinova,
 
 /// A first-generation sensor restarts whenever its line is opened, which takes up to this time.
 const START: Duration = Duration::from_secs(3);
-/// Three attempts at a command, of one second each.
-const COMMAND: Duration = Duration::from_secs(3);
+/// Three attempts at a command and one in the other protocol, each with one second and the time to empty the line.
+const COMMAND: Duration = Duration::from_secs(5);
 /// Three attempts for each of four servos, then every line speed.
 pub(super) const SERVOS: Duration = Duration::from_secs(4);
 /// A tracker answers its first commands within seconds.

@@ -45,6 +45,8 @@ impl SentTimes {
 pub(super) struct ExternalLine {
     datagrams: Box<dyn TransportDatagrams>,
     kind: ExternalKind,
+    /// Of an arm; every command to it, also the last one, has this many angles.
+    joints: usize,
     session: u32,
     /// Sequence number and time of the newest accepted datagram.
     received: Option<(u32, u64)>,
@@ -85,6 +87,7 @@ impl ExternalLine {
         Self {
             datagrams,
             kind,
+            joints: met.newest.joints,
             session: met.newest.session,
             received: Some((met.newest.sequence, met.newest.time_us)),
             sequence: met.sequence,
@@ -236,6 +239,7 @@ impl ExternalLine {
         self.sequence = self.sequence.wrapping_add(1);
         let command = command_of(self.kind, on, numbers);
         let command = Datagram {
+            joints: self.joints,
             session: self.session,
             sequence: self.sequence,
             time_us: self.now_us,
@@ -264,13 +268,10 @@ impl ExternalLine {
     }
 }
 
-/// Returns a command of this kind with these values, for an arm one for each joint; missing ones are 0.
+/// Returns a command of this kind with these values; missing ones are 0.
 pub(super) fn command_of(kind: ExternalKind, on: bool, numbers: &[f64]) -> Datagram {
     let mut command = Datagram::blank(ExternalMessage::Command(kind));
     command.status = if on { status::ON } else { 0 };
-    if kind == ExternalKind::Arm {
-        command.joints = numbers.len();
-    }
     command.numbers.iter_mut().zip(numbers).for_each(|(to, number)| *to = *number);
     command
 }

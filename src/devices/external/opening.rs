@@ -11,7 +11,7 @@ use super::{
     settings::{ExternalKind, ExternalSettings},
 };
 use crate::{
-    ARM_JOINTS, DeviceError, DeviceIdentity, same_serial,
+    DeviceError, DeviceIdentity, same_serial,
     transport::{TransportDatagrams, Udp},
 };
 
@@ -149,7 +149,8 @@ fn shake_hands(
             time_us: begins_us + u64::from(sequence),
             echo_us: newest.time_us,
             watchdog_us,
-            ..command_of(kind, false, &[0.0; ARM_JOINTS][..first.joints])
+            joints: first.joints,
+            ..command_of(kind, false, &[])
         };
         let length = command.encode(&mut wire);
         datagrams.send(&wire[..length]).ok()?;

@@ -106,7 +106,10 @@ pub(crate) fn top_bar_ui(
             state.leads_to_engage &= matches!(now, LoopState::Idle | LoopState::Disconnected);
             let next = state.asked == Some(PersonRequest::Release) || state.leads_to_engage && closed.is_none();
             let ready = since_s >= STEP_WAITS_S;
-            let short_stall = matches!(now, LoopState::Faulted(fault) if fault.is_short_stall(live.rig.rate_hz));
+            // The ready check stalls the loop on purpose, and nothing can be engaged from its page.
+            let may_engage = live.engage_closed.is_none();
+            let short_stall =
+                matches!(now, LoopState::Faulted(fault) if may_engage && fault.is_short_stall(live.rig.rate_hz));
             step_ui(ui, now, TopBarStep { ready, next, wanted: wants_step, closed, short_stall }, outbox);
             // Drawn after the step button to its left, so that keyboard focus follows the reading order.
             stop_ui(ui, place, now, state.asked == Some(PersonRequest::PressStop), outbox);

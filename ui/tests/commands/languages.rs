@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::report_text::{has_text, literals, of_extras, sources};
 
 /// Texts that are the same in both languages: names, abbreviations, terms that German engineers use unchanged.
-const SAME: [&str; 29] = [
+const SAME: [&str; 30] = [
     "Alarm",
     "Ctrl ",
     "Ctrl Shift ",
@@ -36,6 +36,7 @@ const SAME: [&str; 29] = [
     "Tab, Shift Tab",
     "Timing",
     "Training",
+    "{panel} \\u{2013} NIMA Console",
 ];
 
 /// Start of a pair of literals.

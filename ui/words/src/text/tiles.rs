@@ -31,7 +31,7 @@ pub const LOCKED: Text = Text::of(
 
 /// Returns the title of the window of a panel.
 pub fn window_title(panel: &str) -> String {
-    format!("{panel} \u{2013} NIMA Console")
+    text_format!("{panel} \u{2013} NIMA Console", "{panel} \u{2013} NIMA Console")
 }
 
 pub const SIMPLE: Text = Text::of("Simple", "Einfach");

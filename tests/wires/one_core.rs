@@ -60,7 +60,8 @@ fn a_queue_is_never_waited_for_by_a_thread_of_higher_priority_on_the_same_proces
     let rounds = Arc::new(AtomicU64::new(0));
     let ends = Arc::new(AtomicBool::new(false));
     let sender = thread::spawn({
-        let (rounds, ends) = (Arc::clone(&rounds), Arc::clone(&ends));
+        let rounds = Arc::clone(&rounds);
+        let ends = Arc::clone(&ends);
         move || {
             pin_with("80")?;
             while !ends.load(Relaxed) {

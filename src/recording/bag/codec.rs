@@ -61,8 +61,7 @@ pub(super) fn examples(schema: &str) -> Vec<String> {
 impl BagField {
     /// Finds a field of a schema; `None` if it does not exist.
     pub(super) fn find(schema: &str, path: &str) -> Option<Self> {
-        let (_, kind, is_stamped, prefix) = SCHEMAS.iter().find(|(name, ..)| *name == schema)?;
-        let (kind, is_stamped) = (*kind, *is_stamped);
+        let &(_, kind, is_stamped, prefix) = SCHEMAS.iter().find(|(name, ..)| *name == schema)?;
         let path = path.strip_prefix(prefix)?;
         let place = |names: &[&str]| names.iter().position(|name| *name == path);
         let part = match kind {

@@ -204,8 +204,12 @@ impl ColumnMapping {
             let columns: Vec<&str> =
                 if names.len() == 1 { vec![columns] } else { columns.split(',').map(str::trim).collect() };
             if columns.len() != names.len() {
-                let (wanted, found) = (names.len(), columns.len());
-                return Err(ColumnMappingError::Several { text: owned(), name: name.to_owned(), wanted, found });
+                return Err(ColumnMappingError::Several {
+                    text: owned(),
+                    name: name.to_owned(),
+                    wanted: names.len(),
+                    found: columns.len(),
+                });
             }
             if columns.iter().any(|column| column.is_empty()) {
                 return Err(ColumnMappingError::Form { text: owned() });

@@ -153,18 +153,21 @@ impl CsvTable {
     }
 
     fn not_a_number(&self, column: &CsvColumn) -> RecordingError {
-        let (path, line) = (self.path.clone(), self.line());
+        let path = self.path.clone();
+        let line = self.line();
         RecordingError::NotANumber { path, line, column: quoted(&column.name), field: quoted(self.field(column)) }
     }
 
     pub(super) fn not_a_time(&self, column: &CsvColumn) -> RecordingError {
-        let (path, line) = (self.path.clone(), self.line());
+        let path = self.path.clone();
+        let line = self.line();
         RecordingError::NotATime { path, line, column: quoted(&column.name), field: quoted(self.field(column)) }
     }
 
     /// Returns the error for a time that does not increase.
     pub(super) fn clock(&self, before_s: f64, now_s: f64, step_s: f64) -> RecordingError {
-        let (path, line) = (self.path.clone(), self.line());
+        let path = self.path.clone();
+        let line = self.line();
         if step_s == 0.0 {
             return RecordingError::SameTime { path, line, now_s };
         }

@@ -274,9 +274,13 @@ fn column(path: &Path, header: &StringRecord, name: &str) -> Result<usize, TipFo
     let mut places = header.iter().enumerate().filter(|(_, found)| *found == name).map(|(place, _)| place);
     let found = places.next();
     if let (Some(first), Some(second)) = (found, places.next()) {
-        let (first, second) = (first + 1, second + 1);
-        let reason =
-            format!("\"{}\" is the name of two columns of {} ({first} and {second})", quoted(name), path.display());
+        let reason = format!(
+            "\"{}\" is the name of two columns of {} ({} and {})",
+            quoted(name),
+            path.display(),
+            first + 1,
+            second + 1
+        );
         return Err(TipForceError::Columns { reason });
     }
     found.ok_or_else(|| TipForceError::NoColumn {

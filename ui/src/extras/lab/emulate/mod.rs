@@ -27,7 +27,7 @@ use crate::shutdown::Leave;
 
 #[derive(Debug, Args)]
 pub(super) struct EmulateArguments {
-    /// Devices to emulate; `rig` for all devices of a rig, `link` for a bad network between two machines
+    /// Devices to emulate (an unknown name lists them); `rig` for all devices of a rig, `link` for a bad network between two machines
     #[arg(required = true, value_name = "DEVICE")]
     devices: Vec<String>,
     /// Setting of the emulated devices; an unknown key lists those of the devices

@@ -3,8 +3,8 @@
 //! Every datagram starts with the version of the protocol and its kind. A datagram of a handshake continues with
 //! [`MAGIC`] and a number chosen by its sender, so that an answer cannot be forged without seeing the request; these
 //! fourteen bytes and a refusal stay the same in every version. A datagram of a session continues with the session's
-//! number at the receiver and the lower half of its own number; the rest is encrypted: a [`DatagramHead`] with the time
-//! stamps, then the payloads, newest first.
+//! number at the receiver and the lower half of its sequence number; the rest is encrypted: a [`DatagramHead`] with the
+//! time stamps, then the payloads, newest first.
 //!
 //! Numbers are little-endian.
 

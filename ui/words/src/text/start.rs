@@ -147,6 +147,7 @@ pub const ENDOSCOPE_USE_HOVER: Text = Text::of(
      Bild in der Ansicht Chirurg zu sehen.",
 );
 pub const ENDOSCOPE_TYPING: Text = Text::of("Opens when you stop typing", "Öffnet nach der Eingabe");
+pub const ENDOSCOPE_EMULATED: Text = Text::of("Starts with this rig", "Startet mit diesem Aufbau");
 pub const ENDOSCOPE_OPENING: Text = Text::of("Opening", "Wird geöffnet");
 pub const ENDOSCOPE_FORMS: Text = Text::of(
     "Enter http://HOST:PORT/PATH, or the path of a .mjpeg file, a JPEG file or a folder of JPEG files",

@@ -1,7 +1,7 @@
 """Runs the unit tests, cross-built for Windows, under wine: one program for each crate, each in the folder of its crate, as cargo does.
 
-Reads what `cargo test --no-run --message-format=json` wrote. At the end it tells how many tests passed and failed, and which were not judged, each with
-its reason. Fails when a test fails, a program does not end, or `left_out.txt` names a test that is not there.
+Reads what `cargo test --no-run --message-format=json` wrote. At the end it prints how many tests passed and failed, and which were not judged, each with
+its reason. Fails when a test fails, a program does not end, or `left_out.txt` names a test that does not exist.
 """
 
 import argparse

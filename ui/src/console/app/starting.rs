@@ -127,8 +127,6 @@ impl ConsoleApp {
     }
 
     pub(super) fn open_start(&mut self) {
-        // A user who opens this page needs no welcome, and the welcome describes the rig that ran before.
-        self.start.welcome.close();
         self.list.is_open = false;
         self.start.open(&self.running, &self.settings.now.recent);
     }
@@ -150,6 +148,8 @@ impl ConsoleApp {
             && !self.outbox.holds_stop()
         {
             let before = self.running.clone();
+            // The welcome describes the rig that ran before.
+            self.start.welcome.close();
             self.begin(choice, Some(before), None);
         }
     }

@@ -222,7 +222,13 @@ pub struct PlotSet(u16);
 
 impl Default for PlotSet {
     fn default() -> Self {
-        TracePlot::FORCES.into_iter().fold(Self(0), Self::toggled)
+        TracePlot::FORCES.into_iter().collect()
+    }
+}
+
+impl FromIterator<TracePlot> for PlotSet {
+    fn from_iter<I: IntoIterator<Item = TracePlot>>(plots: I) -> Self {
+        Self(plots.into_iter().fold(0, |set, plot| set | 1 << plot.index()))
     }
 }
 

@@ -31,6 +31,7 @@ use nima_session::{
 use nima_simulation::{SimulationPlan, Training, scene::Scene};
 
 mod images;
+mod signals;
 
 use super::Playback;
 

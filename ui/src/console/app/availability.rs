@@ -221,7 +221,9 @@ impl ConsoleApp {
     /// Returns the panels of the views on the screen: of the machine, or of the recorded session.
     fn panels_in_view(&self) -> Option<&Panels> {
         match (self.page(), &self.past) {
-            (ActivePage::Past, Some(past)) if past.beside.is_none() && !self.list.is_open => Some(&past.panels),
+            (ActivePage::Past, Some(past)) if past.beside.is_none() && !self.list.is_open && !past.is_foreign() => {
+                Some(&past.panels)
+            }
             (ActivePage::Monitor, _) => Some(&self.panels),
             _ => None,
         }

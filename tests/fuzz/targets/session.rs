@@ -1,4 +1,4 @@
-//! Recorded sessions: their reader, the list of what is missing in them, and what is read from their topics.
+//! Recorded sessions: their reader, the list of missing data, and the data in their topics.
 #![no_main]
 
 use std::path::Path;

@@ -127,6 +127,8 @@ impl ConsoleApp {
     }
 
     pub(super) fn open_start(&mut self) {
+        // A user who opens this page needs no welcome, and the welcome describes the rig that ran before.
+        self.start.welcome.close();
         self.list.is_open = false;
         self.start.open(&self.running, &self.settings.now.recent);
     }

@@ -169,14 +169,15 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
     }
     let fraction = past.read_share();
     let reading = (fraction < 0.999 && past.report.refused.is_none()).then(|| text::playback::read(fraction));
-    let words = past.report.job.clone().or_else(|| past.report.limited.clone()).or(reading);
+    let words = past.report.job.clone().or_else(|| past.report.trouble()).or(reading);
     if let Some(words) = words {
         // If the row has no room for it, the time line alone shows the reading progress.
         if ui.available_width() < MESSAGE {
             return;
         }
-        let font = fitting_style(ui, &words, &TextStyle::Small, ui.available_width());
-        ui.add(Label::new(weak(words.clone()).font(font)).truncate()).on_hover_text(words);
+        let first = words.lines().next().unwrap_or_default();
+        let font = fitting_style(ui, first, &TextStyle::Small, ui.available_width());
+        ui.add(Label::new(weak(first).font(font)).truncate()).on_hover_text(words);
     }
 }
 

@@ -103,8 +103,19 @@ struct OperatorLines {
     refused: Option<String>,
     /// Reason why a part is available only from the recorded plots.
     limited: Option<String>,
+    /// Missing data of the session, one line each.
+    lacks: Vec<String>,
     /// Result of the last report or excerpt.
     job: Option<String>,
+}
+
+impl OperatorLines {
+    /// Returns what is wrong with the session, the missing data first.
+    fn trouble(&self) -> Option<String> {
+        let lacks = self.lacks.iter().map(|line| text::playback::lacks(line));
+        let all: Vec<String> = lacks.chain(self.limited.clone()).collect();
+        (!all.is_empty()).then(|| all.join("\n"))
+    }
 }
 
 impl Playback {
@@ -226,6 +237,7 @@ impl Playback {
             WorkerAnswer::Refused(why) => self.report.refused = Some(text::playback::refused(&why)),
             WorkerAnswer::Read(part) => self.overview.add(part),
             WorkerAnswer::Limited(why) => self.report.limited = Some(text::playback::limited(&why)),
+            WorkerAnswer::Lacks(lines) => self.report.lacks = lines,
             // Ignore a moment that is no longer requested.
             WorkerAnswer::Shown(live, extent, t_s) if (t_s - self.wanted_s).abs() < 1e-9 => {
                 self.extent = extent;

@@ -237,7 +237,8 @@ pub(crate) fn run_with(
             wrist.tool
         );
     }
-    start.reasons.of(&summary, by_itself).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
+    let link = start.line.as_ref().and_then(|line| line.trouble());
+    start.reasons.of(&summary, by_itself, link.as_ref()).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
 
 /// Results of a run; ground truth only from emulated rigs.

@@ -243,6 +243,11 @@ pub fn limited(why: &str) -> String {
     text_format!("Cannot be replayed in full: {why}", "Nicht vollständig wiederzugeben: {why}")
 }
 
+/// `line`: data that the session lacks.
+pub fn lacks(line: &str) -> String {
+    text_format!("Not complete: {line}", "Nicht vollständig: „{line}“")
+}
+
 pub fn refused(why: &str) -> String {
     text_format!("This session cannot be shown: {why}", "Diese Sitzung ist nicht darstellbar: {why}")
 }

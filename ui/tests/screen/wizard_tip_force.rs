@@ -52,7 +52,7 @@ impl eframe::App for Fixture {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         ScrollArea::vertical().show(ui, |ui| {
             ui.set_max_width(760.0);
-            if let Some(WizardPageRequest::Save(saving)) = self.wizards.ui(ui, &self.binding) {
+            if let Some(WizardPageRequest::Save(saving)) = self.wizards.ui(WizardKind::TipForce, ui, &self.binding) {
                 self.saving.get_or_insert(saving);
             }
         });
@@ -71,7 +71,7 @@ impl Console {
         scene.person.as_mut().unwrap().flaw = flaw;
         let calibrations = Calibrations { gravity: Some(gravity.model), ..Calibrations::default() };
         let bench = Fixture {
-            wizards: Wizards::at(WizardKind::TipForce),
+            wizards: Wizards::default(),
             binding: Binding {
                 sensor: gravity.head.sensor.clone(),
                 tool: gravity.head.tool.clone(),
@@ -92,9 +92,9 @@ impl Console {
     /// Advances the rig for a moment, then draws the window.
     fn step(&mut self) {
         let wizards = &mut self.window.state_mut().wizards;
-        let ticks = self.rig.go_on(TICKS, wizards.prompt());
+        let ticks = self.rig.go_on(TICKS, wizards.prompt(WizardKind::TipForce));
         for tick in &ticks {
-            wizards.tick(tick, 1000.0);
+            wizards.tick(WizardKind::TipForce, tick, 1000.0);
         }
         self.window.step();
     }

@@ -34,9 +34,6 @@ const ROW: f32 = 40.0;
 
 #[derive(Debug)]
 pub struct StartPage {
-    pub(super) is_open: bool,
-    /// The page of an extra is requested.
-    pub(super) wants_page: bool,
     /// The page for newcomers.
     pub(super) welcome: Welcome,
     chosen: RigChoice,
@@ -53,6 +50,15 @@ pub struct StartPage {
     /// The chosen rig's file may have changed.
     is_stale: bool,
     picking: Option<Picking>,
+}
+
+/// The user's request on the page.
+#[derive(Debug)]
+pub(super) enum StartRequest {
+    Start(RigChoice),
+    /// Show the page of an extra.
+    Page,
+    Leave,
 }
 
 /// Input for drawing the page.
@@ -72,8 +78,6 @@ pub(super) struct StartInputs<'a> {
 impl StartPage {
     pub(super) fn new(chosen: RigChoice) -> Self {
         Self {
-            is_open: false,
-            wants_page: false,
             welcome: Welcome::default(),
             chosen,
             folder: None,
@@ -90,9 +94,8 @@ impl StartPage {
         }
     }
 
-    /// Shows the page and reads everything again; the running rig is selected.
+    /// Reads everything again for the page; the running rig is selected.
     pub(super) fn open(&mut self, running: &RigChoice, recent: &[RigChoice]) {
-        self.is_open = true;
         self.report = None;
         self.is_stale = true;
         self.read(running, recent);
@@ -128,9 +131,9 @@ impl StartPage {
         self.chosen = choice;
     }
 
-    /// Draws the page; returns the choice to start.
-    pub(super) fn ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
-        let mut start = None;
+    /// Draws the page; returns the user's request.
+    pub(super) fn ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<StartRequest> {
+        let mut request = None;
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 8));
         CentralPanel::default().frame(frame).show(ui, |ui| {
             let height = ui.available_height() - 66.0;
@@ -142,12 +145,14 @@ impl StartPage {
                 column(ui, "devices", vec2(width, height), |ui| self.devices_ui(ui, now));
             });
             ui.add_space(6.0);
-            start = self.foot_ui(ui, now);
+            request = self.foot_ui(ui, now);
         });
-        start
+        request
     }
 
-    fn elsewhere_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
+    /// Returns whether the page of an extra is requested.
+    fn elsewhere_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> bool {
+        let mut wants_page = false;
         // Place the buttons at the right edge, below the shortest column.
         let corner = ui.max_rect().right_top() - vec2(theme::STOP_SIZE.x, 0.0);
         let place = egui::Rect::from_min_size(corner, theme::STOP_SIZE);
@@ -155,7 +160,7 @@ impl StartPage {
             let place = place.translate(vec2(-theme::STOP_SIZE.x - theme::GAP, 0.0));
             let page = Button::new(name).wrap();
             let page = ui.add_enabled_ui(!now.is_starting, |ui| ui.put(place, page)).inner;
-            self.wants_page |= page.on_hover_text(meaning).clicked();
+            wants_page = page.on_hover_text(meaning).clicked();
         }
         let button = Button::new(text::start::ELSEWHERE);
         let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
@@ -164,6 +169,7 @@ impl StartPage {
             let folder = self.folder.as_deref();
             self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
         }
+        wants_page
     }
 
     fn rigs_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
@@ -324,8 +330,8 @@ impl StartPage {
         }
     }
 
-    fn foot_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
-        let mut start = None;
+    fn foot_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<StartRequest> {
+        let mut request = None;
         ui.horizontal(|ui| {
             let held = now.live.state() == LoopState::Engaged && is_real(&now.live.rig);
             let same = self.chosen == *now.running;
@@ -336,11 +342,11 @@ impl StartPage {
             let button = next_button(name, !same).min_size(theme::STOP_SIZE);
             let button = ui.add_enabled(ready && !held && !now.is_starting, button);
             if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
-                start = Some(self.chosen.clone());
+                request = Some(StartRequest::Start(self.chosen.clone()));
             }
             let back = Button::new(text::start::BACK).min_size(theme::STOP_SIZE);
             if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER).clicked() {
-                self.is_open = false;
+                request = Some(StartRequest::Leave);
             }
             ui.vertical(|ui| {
                 ui.label(RichText::new(self.words_of(&self.chosen)).font(theme::strong(15.0)));
@@ -351,9 +357,11 @@ impl StartPage {
                     ui.add(Label::new(report).wrap());
                 }
             });
-            self.elsewhere_ui(ui, now);
+            if self.elsewhere_ui(ui, now) {
+                request = Some(StartRequest::Page);
+            }
         });
-        start
+        request
     }
 }
 

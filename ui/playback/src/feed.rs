@@ -13,7 +13,7 @@ use nima_session::{
 };
 use nima_words::{report_text::chain, text};
 
-use super::session_index::PlaybackFile;
+use super::playback_file::PlaybackFile;
 
 /// Recorded plots are read in segments of this length, s: about a chunk of the file.
 const STRETCH_S: f64 = 0.4;

@@ -12,6 +12,7 @@ mod job;
 pub mod list;
 mod list_row;
 mod overview;
+mod playback_file;
 mod session_index;
 #[cfg(test)]
 mod tests;

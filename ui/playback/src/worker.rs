@@ -18,7 +18,8 @@ use nima_words::language;
 use super::{
     feed::TickFrame,
     overview::{Overview, OverviewTables},
-    session_index::{Chase, PlaybackFile, PlaybackPosition, SessionIndex},
+    playback_file::PlaybackFile,
+    session_index::{Chase, PlaybackPosition, SessionIndex},
 };
 
 /// Interval of progress reports.

@@ -10,8 +10,7 @@ use nima_panels::{
 
 use crate::bench::{can_press, console_of, pick, read, shows, toured, until};
 
-/// Text of the ready check's tile on the set-up page.
-const SETUP: &str = "never run";
+const SETUP: &str = "For every arm: devices";
 const START: &str = "Restart";
 
 fn console(folder: &std::path::Path) -> Harness<'static, ConsoleApp> {

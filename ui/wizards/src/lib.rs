@@ -20,14 +20,14 @@ mod tip_force;
 
 use std::sync::{Arc, OnceLock};
 
-use egui::{RichText, Ui};
+use egui::{Frame, Margin, RichText, Stroke, Ui};
 use nima_endoscope::DecodedImage;
 use nima_machine::{
     messages::Tick,
     rig::{Prompt, Side},
 };
 use nima_screen::{scene3d::side_name, theme, widgets::small};
-use nima_words::{report_text::side_word, text};
+use nima_words::text;
 
 pub use attend::WizardOutcome;
 pub use correspondence::CorrespondenceWizard;
@@ -66,6 +66,15 @@ impl GoOn {
             Self::Check => text::wizards::FOLLOWING_CHECK.get().to_owned(),
         }
     }
+}
+
+/// Draws the name of an arm on a chip of its colour.
+fn arm_chip(ui: &mut Ui, side: Side) {
+    let colour = theme::now().arms[side.index()];
+    let frame = Frame::new().stroke(Stroke::new(1.5, colour)).corner_radius(theme::CORNER);
+    frame.inner_margin(Margin::symmetric(8, 2)).show(ui, |ui| {
+        ui.label(RichText::new(text::calibrations::arm(side_name(side))).font(theme::strong(14.0)).color(colour));
+    });
 }
 
 /// The technician's request on a wizard's page.
@@ -173,8 +182,14 @@ impl Wizards {
 
     /// Draws this wizard; returns its request.
     pub fn ui(&mut self, which: WizardKind, ui: &mut Ui, binding: &Binding) -> Option<WizardPageRequest> {
-        let arm = binding.subject.as_ref().map(|subject| side_word(subject.side));
-        ui.label(RichText::new(text::wizards::title(which.name(), arm)).font(theme::strong(22.0)));
+        let side = binding.subject.as_ref().map(|subject| subject.side);
+        ui.horizontal(|ui| {
+            let title = RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0));
+            ui.label(title);
+            if let Some(side) = side {
+                arm_chip(ui, side);
+            }
+        });
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
         let asked = wizard_ui(self.the_mut(which)?, ui, binding)?;

@@ -26,13 +26,28 @@ pub(super) struct SetupPage {
     at: Instant,
 }
 
+/// Keeps the last known calibrations of an arm whose sensor is not connected: a sensor that is lost for a moment must not move
+/// the tiles under the pointer. The tile of the devices shows the loss.
+fn with_known(mut arms: Vec<ArmOverview>, before: &[ArmOverview]) -> Vec<ArmOverview> {
+    for arm in arms.iter_mut().filter(|arm| arm.wrist.is_none()) {
+        if let Some(known) = before.iter().find(|known| known.side == arm.side) {
+            arm.clone_from(known);
+        }
+    }
+    arms
+}
+
 impl ConsoleApp {
     /// Reads the content and opens the page; the loop continues.
     pub(super) fn open_setup(&mut self) {
         self.way_back = WayBack::Monitor;
         let arms = overview(&self.active, &self.live.rig, &self.running.rig);
+        let arms = match &self.shown {
+            ShownPage::Setup(before) => with_known(arms, &before.arms),
+            _ => arms,
+        };
         let check = self.active.store().and_then(|store| store.last_check(&self.live.rig.name));
-        self.shown = ShownPage::Setup(SetupPage { arms, check, at: Instant::now() });
+        self.shown = ShownPage::Setup(Box::new(SetupPage { arms, check, at: Instant::now() }));
     }
 
     /// Lays out the page next to the active calibrations.
@@ -77,5 +92,24 @@ impl ConsoleApp {
         if !matches!(self.shown, ShownPage::Setup(_)) {
             self.way_back = WayBack::Setup;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::rig::Side;
+    use nima_recording::store::WristId;
+
+    use super::*;
+
+    #[test]
+    fn an_arm_whose_sensor_is_lost_keeps_what_was_known() {
+        let wrist =
+            |serial_number: &str| Some(WristId { serial_number: serial_number.to_owned(), tool: "grasper".to_owned() });
+        let arm = |side, wrist| ArmOverview { side, wrist, lines: Vec::new() };
+        let before = [arm(Side::Right, wrist("SN1")), arm(Side::Left, wrist("SN2"))];
+        let lost = vec![arm(Side::Right, None), arm(Side::Left, wrist("SN3"))];
+        let now = with_known(lost, &before);
+        assert_eq!([&now[0].wrist, &now[1].wrist], [&wrist("SN1"), &wrist("SN3")], "another sensor is another arm");
     }
 }

@@ -18,7 +18,7 @@ pub(super) enum ShownPage {
     Sessions,
     /// The ready check, open since this time.
     Check(Instant),
-    Setup(SetupPage),
+    Setup(Box<SetupPage>),
     Wizard(WizardKind),
     Start,
     /// The page of an extra, or its run.

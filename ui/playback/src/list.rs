@@ -19,7 +19,7 @@ use nima_words::{language, text};
 
 use super::{
     job::SessionJob,
-    list_row::{SessionListRow, SessionRequest, SortBy, alarms_in, read, row_ui},
+    list_row::{SessionListRow, SessionRequest, SortBy, alarms_in, note_width, read, row_ui},
 };
 
 #[derive(Debug, Default)]
@@ -197,6 +197,7 @@ impl SessionList {
         if shown.is_empty() {
             ui.label(weak(text::playback::NOT_FOUND));
         }
+        let note_width = note_width(ui.available_width());
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             Grid::new("sessions").spacing(vec2(8.0, 6.0)).striped(true).show(ui, |ui| {
                 for by in SortBy::ALL {
@@ -213,7 +214,7 @@ impl SessionList {
                 ui.end_row();
                 for row in shown {
                     let is_asked = self.asked.as_ref() == Some(&row.shelved.path);
-                    wish = row_ui(ui, row, is_asked, self.job.is_none()).or(wish.take());
+                    wish = row_ui(ui, row, is_asked, self.job.is_none(), note_width).or(wish.take());
                     ui.end_row();
                 }
             });

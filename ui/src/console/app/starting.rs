@@ -11,7 +11,10 @@ use egui::{Key, Modifiers, Ui};
 use nima_machine::config::RigConfig;
 use nima_panels::{rig_choice::RigChoice, roles::Role};
 use nima_simulation::scene::Scene;
-use nima_words::{report_text::chain, text};
+use nima_words::{
+    report_text::chain,
+    text::{self, of_files::of_file},
+};
 
 use super::{ConsoleApp, shown_page::ShownPage};
 use crate::{
@@ -235,7 +238,8 @@ impl ConsoleApp {
                 } else if matches!(self.shown, ShownPage::Start) {
                     self.leave_page();
                 }
-                self.start.notify(because.map(|cause| text::start::not_started(&cause, Some(&self.live.rig.name))));
+                self.start
+                    .notify(because.map(|cause| text::start::not_started(&cause, Some(of_file(&self.live.rig.name)))));
                 self.running = choice;
             }
             (Err(cause), Some(before)) => self.begin(before, None, Some(cause)),

@@ -7,7 +7,7 @@ use nima_screen::{
     theme,
     widgets::{Sign, card, sign_ui, small, weak},
 };
-use nima_words::text;
+use nima_words::text::{self, of_files::of_file};
 
 use super::{StartInputs, StartPage, looking};
 
@@ -105,6 +105,7 @@ fn plugged_ui(ui: &mut Ui, plugged: &PluggedDevices) {
         ui.label(weak(text::start::NOTHING_PLUGGED));
     }
     for [place, used, ids] in lines {
+        let [place, used, ids] = [&place, &used, &ids].map(|words| of_file(words));
         ui.label(RichText::new(used).font(theme::strong(14.0)));
         ui.add(Label::new(small(format!("{place}, {ids}"))).wrap());
     }

@@ -19,7 +19,7 @@ use nima_screen::{
     theme,
     widgets::{card, next_button, small, weak},
 };
-use nima_words::text;
+use nima_words::text::{self, of_files::of_file};
 
 use addresses::ExampleAddresses;
 pub(crate) use choices::drawn_anew;
@@ -301,7 +301,7 @@ pub(super) fn is_real(rig: &RigConfig) -> bool {
 }
 
 fn name_in<'a>(list: &'a [ChoiceEntry], key: &'a str) -> &'a str {
-    list.iter().find(|entry| entry.key == key).map_or(key, |entry| &entry.name)
+    list.iter().find(|entry| entry.key == key).map_or(key, |entry| of_file(&entry.name))
 }
 
 fn column(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mut Ui)) {
@@ -320,8 +320,9 @@ fn row_ui(ui: &mut Ui, chosen: bool, usable: bool, name: &str, about: &str) -> e
 }
 
 fn entry_ui(ui: &mut Ui, entry: &ChoiceEntry, chosen: bool, running: bool) -> bool {
-    let clicked = row_ui(ui, chosen, entry.usable, &entry.name, &entry.key).clicked();
-    let words = if running { format!("{}. {}", text::start::RUNNING.get(), entry.about) } else { entry.about.clone() };
+    let clicked = row_ui(ui, chosen, entry.usable, of_file(&entry.name), &entry.key).clicked();
+    let about = of_file(&entry.about);
+    let words = if running { format!("{}. {about}", text::start::RUNNING.get()) } else { about.to_owned() };
     ui.add(Label::new(small(words)).wrap());
     ui.add_space(4.0);
     clicked

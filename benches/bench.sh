@@ -25,7 +25,7 @@ cargo_bench() {
   cargo bench --locked --workspace --bench "$name" -- "$@"
 }
 
-# What is done without us as multiples of ours: the median of five runs of each program, which begins elsewhere in memory each time.
+# Cost of the alternatives as multiples of ours: the median of five runs of each program, each at other addresses in memory.
 ratios() {
   local run name
   for run in 1 2 3 4 5; do
@@ -46,7 +46,7 @@ store_ratios() {
   cat "$baseline"
 }
 
-# Fails where ours has become more than 10 % dearer against what it is compared with, or where a stored ratio is not measured any more.
+# Fails if our code is more than 10 % slower relative to an alternative, or if a stored ratio is no longer measured.
 compare_ratios() {
   local now
   now=$(ratios)

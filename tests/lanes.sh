@@ -94,7 +94,7 @@ idle_percent() {
     END { printf "%d\n", 100 * (idle - idle_before) / (all - all_before + 1e-9) }'
 }
 
-# One busy second may be the end of our own work: only the third busy second in a row indicates other work.
+# One busy second may be the end of our work: only the third busy second in a row indicates other work.
 is_quiet() {
   local _
   for _ in 1 2 3; do [ "$(idle_percent)" -lt 50 ] || return 0; done

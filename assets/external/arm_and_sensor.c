@@ -1,10 +1,10 @@
-/* A simulated arm, and a force sensor at its tip that feels somebody push and let go.
+/* A simulated arm, and a force sensor at its tip that a hand pushes and releases.
  *
  *   cc -O2 -o arm_and_sensor arm_and_sensor.c -lm && ./arm_and_sensor 127.0.0.1 47201 47202 [SECONDS [ANGLES]]
  *
- * The first port is the arm's, the second the sensor's. ANGLES are where the joints begin, rad: one for each joint. For
- * an arm of six joints compile with -DNIMA_JOINTS=6. The joints follow their commands with a lag of 10 Hz and brake
- * when NIMA Console cannot be heard. At the end, or after Ctrl-C, it prints what it has counted as lines of JSON. */
+ * The first port is for the arm, the second for the sensor. ANGLES are the initial joint angles, rad. For an arm of six
+ * joints, compile with -DNIMA_JOINTS=6. The joints follow their commands with a bandwidth of 10 Hz, and brake while NIMA
+ * Console is silent. At the end, or after Ctrl-C, the program prints its counters as lines of JSON. */
 #define _POSIX_C_SOURCE 200809L
 #include "nima_device.h"
 
@@ -34,7 +34,7 @@ static void tell(const char *name, const nima_device *device) {
 }
 
 int main(int count, char **words) {
-    /* With the instrument in its trocar on the rig of docs/external-device.md. */
+    /* Angles with the instrument in its trocar, for the rig in docs/external-device.md. */
     static const double gen3_rad[7] = {2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92};
     double joint_rad[NIMA_JOINTS];
     const double share = 1.0 - exp(-6.283 * 10.0 * 1e-3);
@@ -56,7 +56,7 @@ int main(int count, char **words) {
         const double t_s = (double)(nima_now_us() - begin_us) * 1e-6;
         nima_reading of_arm = {0}, of_sensor = {0};
         for (int joint = 0; joint < NIMA_JOINTS; joint++) {
-            /* Off: the joints hold where they are. */
+            /* Off: the joints hold their positions. */
             const double way_rad = command.on ? (command.target_rad[joint] - joint_rad[joint]) * share : 0.0;
             joint_rad[joint] += way_rad;
             of_arm.joint_rad[joint] = joint_rad[joint];

@@ -1,9 +1,10 @@
-"""A simulated arm, and a force sensor at its tip that feels somebody push and let go.
+"""A simulated arm, and a force sensor at its tip that a hand pushes and releases.
 
     python3 arm_and_sensor.py 127.0.0.1 47201 47202 [SECONDS [ANGLES]]
 
-The first port is the arm's, the second the sensor's. ANGLES are where the joints begin, rad: one for each joint. The joints follow their commands with a lag of 10 Hz and hold when
-NIMA Console cannot be heard. At the end, or after Ctrl-C, it prints what it has counted as lines of JSON.
+The first port is for the arm, the second for the sensor. ANGLES are the initial joint angles, rad. The joints follow
+their commands with a bandwidth of 10 Hz, and hold while NIMA Console is silent. At the end, or after Ctrl-C, the program
+prints its counters as lines of JSON.
 """
 
 import json
@@ -14,7 +15,7 @@ import sys
 from nima_device import ARM, SENSOR, Device, arm, every, sensor
 
 PERIOD_S = 1e-3
-# With the instrument in its trocar on the rig of docs/external-device.md.
+# Angles with the instrument in its trocar, for the rig in docs/external-device.md.
 START_RAD = (2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92)
 
 

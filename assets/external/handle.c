@@ -1,9 +1,9 @@
-/* A simulated haptic handle: a hand of 0.3 kg that a spring leads along a circle, and that feels the force of NIMA Console.
+/* A simulated haptic handle: a spring moves a hand of 0.3 kg along a circle, and the hand feels the force of NIMA Console.
  *
  *   cc -O2 -o handle handle.c -lm && ./handle 127.0.0.1 47200 [SECONDS]
  *
- * With a real handle the lines between the two marks are those of your device. At the end, or after Ctrl-C, it prints
- * what it has counted as one line of JSON. */
+ * For a real handle, replace the lines between the two marks. At the end, or after Ctrl-C, the program prints its
+ * counters as one line of JSON. */
 #define _POSIX_C_SOURCE 200809L
 #include "nima_device.h"
 
@@ -42,7 +42,7 @@ int main(int count, char **words) {
     nima_command command = {0};
     while (!ends && (double)(nima_now_us() - begin_us) * 1e-6 < seconds) {
         nima_reading reading = {0};
-        /* ---- your device: measure, and put on the force of the newest command ---- */
+        /* ---- your device: measure, and apply the force of the newest command ---- */
         const double t_s = (double)(nima_now_us() - begin_us) * 1e-6;
         const double goal_m[3] = {0.01 * cos(1.9 * t_s), 0.01 * sin(1.9 * t_s), 0.0};
         for (int i = 0; i < 3; i++) {

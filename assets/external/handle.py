@@ -1,8 +1,9 @@
-"""A simulated haptic handle: a hand of 0.3 kg that a spring leads along a circle, and that feels the force of NIMA Console.
+"""A simulated haptic handle: a spring moves a hand of 0.3 kg along a circle, and the hand feels the force of NIMA Console.
 
     python3 handle.py 127.0.0.1 47200 [SECONDS]
 
-At the end, or after Ctrl-C, it prints what it has counted as one line of JSON.
+For a real handle, replace the lines between the two marks. At the end, or after Ctrl-C, the program prints its counters
+as one line of JSON.
 """
 
 import json
@@ -22,7 +23,7 @@ def main(address, port, seconds="inf"):
     largest_n, with_force, turns, last_s = 0.0, 0, 0, 0.0
     try:
         for t_s in every(PERIOD_S, float(seconds)):
-            # ---- your device: measure, and put on the force of the newest command ----
+            # ---- your device: measure, and apply the force of the newest command ----
             step_s, last_s = min(t_s - last_s, 5 * PERIOD_S), t_s
             goal_m = (0.01 * math.cos(1.9 * t_s), 0.01 * math.sin(1.9 * t_s), 0.0)
             for i in range(3):

@@ -1,15 +1,15 @@
-/* A handle, an arm or a force sensor of your own for NIMA Console: one datagram each way per period (protocol 1).
+/* Connects your own handle, arm or force sensor to NIMA Console: one datagram in each direction per period (protocol 1).
  *
  *   nima_device device;
  *   if (nima_device_open(&device, NIMA_HANDLE, "127.0.0.1", 47200, "my handle", "1") != 0) return 1;
  *   for (;;) {                                  // about 1000 times a second
- *       nima_reading reading = {0};             // fill in what your device measures, SI units
+ *       nima_reading reading = {0};             // enter your device's measurements, SI units
  *       nima_command command;
  *       nima_device_exchange(&device, &reading, &command);
- *       // do what `command` says; it is off and zero whenever NIMA Console cannot be heard in time
+ *       // execute `command`; it is off and zero while NIMA Console is silent
  *   }
  *
- * `static inline`, no memory is allocated, nothing waits. POSIX or Windows (link with ws2_32). C99 and C++.
+ * All functions are `static inline`, allocate no memory and never wait. POSIX or Windows (link with ws2_32). C99 and C++.
  * Wire format and rules: docs/external-device.md. Licence: MIT OR Apache-2.0. Research use only. */
 #ifndef NIMA_DEVICE_H
 #define NIMA_DEVICE_H
@@ -33,7 +33,7 @@ enum { NIMA_HANDLE = 1, NIMA_ARM = 2, NIMA_SENSOR = 3 };
 
 /* Bits of `status`. */
 enum {
-    NIMA_ON = 1, /* the force is on, or the arm follows `target_rad`: tell it only while it is true */
+    NIMA_ON = 1, /* the force is on, or the arm follows `target_rad`; set it only while that is true */
     NIMA_FAULT = 1 << 1, /* your device has a fault; put its code into `fault` */
     NIMA_THROTTLED = 1 << 2, NIMA_OVERRANGE = 1 << 3, NIMA_INVALID = 1 << 4, NIMA_RAW = 1 << 5, /* sensor */
     NIMA_HAS_ORIENTATION = 1 << 8, NIMA_HAS_VELOCITY = 1 << 9, NIMA_HAS_GRIPPER = 1 << 10, /* handle */
@@ -45,11 +45,11 @@ enum {
 #define NIMA_JOINTS 7
 #endif
 #define NIMA_BYTES_MAX 260
-/* Without a command for so long the device is off. NIMA Console refuses a handle or an arm with more than its rig file
- * allows (20 ms). */
+/* The device switches off after this time without a command. NIMA Console refuses a handle or an arm whose time exceeds
+ * the limit in the rig file (20 ms). */
 #define NIMA_WATCHDOG_US 20000u
 
-/* What your device measures, in its own frame; only the fields of its kind are sent. */
+/* Measurements of your device, in its own frame; only the fields of its kind are sent. */
 typedef struct {
     uint16_t status, fault;
     uint32_t buttons;
@@ -58,13 +58,13 @@ typedef struct {
     double force_n[3], torque_nm[3], acceleration_m_s2[3], angular_velocity_rad_s[3], temperature_c; /* sensor */
 } nima_reading;
 
-/* What your device must do. All zero unless `on`. */
+/* Command to your device. All zero unless `on`. */
 typedef struct {
-    int heard; /* NIMA Console is heard: its newest command came within the watchdog's time */
+    int heard; /* the newest command of NIMA Console arrived within the watchdog's time */
     int on;    /* switch the force on, or follow `target_rad`; otherwise: no force, hold or brake */
     double force_n[3], gripper_n;   /* handle: on the hand, in the frame of the readings */
     double target_rad[NIMA_JOINTS]; /* arm */
-    double round_trip_s;            /* from our datagram to the answer that knows it; < 0 if not known */
+    double round_trip_s;            /* from our datagram to the answer that acknowledges it; < 0 if unknown */
 } nima_command;
 
 typedef struct {
@@ -75,14 +75,14 @@ typedef struct {
 #endif
     int kind;
     uint32_t session, sequence, peer_sequence;
-    uint64_t peer_us, heard_us, watchdog_us; /* time stamp of the newest command; when it came; its time limit */
+    uint64_t peer_us, heard_us, watchdog_us; /* newest command: time stamp, arrival, time limit */
     nima_command command;
     char product[24], serial[16];
-    /* Counters: datagrams sent, commands taken, too old or repeated or out of order, damaged, taken back for silence. */
+    /* Numbers of datagrams sent, commands accepted, outdated or repeated commands, damaged datagrams, and silences. */
     uint64_t sent, taken, stale, damaged, silences;
 } nima_device;
 
-/* A clock that is never set, us; never 0. */
+/* Time of a clock that is never set, us; never 0. */
 static inline uint64_t nima_now_us(void) {
 #ifdef _WIN32
     LARGE_INTEGER count, rate;
@@ -133,7 +133,7 @@ static inline double nima_take_number(const uint8_t *at) {
     return number;
 }
 
-/* Opens a device of this kind for NIMA Console at this IPv4 address and port. Returns 0, or -1 if that is not possible. */
+/* Opens a device of this kind; NIMA Console is at this IPv4 address and port. Returns 0, or -1 on failure. */
 static inline int nima_device_open(nima_device *device, int kind, const char *address, uint16_t port,
                                    const char *product, const char *serial) {
     struct sockaddr_in to;
@@ -154,7 +154,7 @@ static inline int nima_device_open(nima_device *device, int kind, const char *ad
     if (device->socket < 0) return -1;
     fcntl(device->socket, F_SETFL, O_NONBLOCK);
 #endif
-    /* Only datagrams from there are received from now on. */
+    /* From now on, only datagrams from this address are received. */
     if (connect(device->socket, (struct sockaddr *)&to, sizeof to) != 0) return -1;
     device->kind = kind;
     device->watchdog_us = NIMA_WATCHDOG_US;
@@ -209,11 +209,11 @@ static inline void nima_device_send(nima_device *device, const nima_reading *rea
         nima_put_numbers(&at, &reading->temperature_c, 1);
     }
     nima_put(&at, nima_crc32(wire, (size_t)(at - wire)), 4);
-    /* Where nobody listens yet the datagram is lost, and the next one tries again. */
+    /* If no program receives yet, the datagram is lost, and the next one tries again. */
     if (send(device->socket, (const char *)wire, (size_t)(at - wire), 0) > 0) device->sent++;
 }
 
-/* Takes one command; returns 0 if the bytes are none, or an old one. */
+/* Parses one command; returns 0 if the bytes are not a valid, new command. */
 static inline int nima_device_take(nima_device *device, const uint8_t *wire, size_t count, uint64_t now_us) {
     const int numbers = device->kind == NIMA_HANDLE ? 4 : device->kind == NIMA_ARM ? NIMA_JOINTS : 0;
     const size_t body = 48 + 8 * (size_t)numbers;
@@ -224,7 +224,7 @@ static inline int nima_device_take(nima_device *device, const uint8_t *wire, siz
     }
     const uint32_t ahead = (uint32_t)nima_take(wire + 12, 4) - device->peer_sequence;
     const uint64_t echo_us = nima_take(wire + 24, 8);
-    /* A command for another program, a repeated one, one from behind, or one that is made of an old reading. */
+    /* Refuse commands for another program, repeated or reordered commands, and answers to an outdated reading. */
     if (nima_take(wire + 8, 4) != device->session || (device->command.heard && (ahead == 0 || ahead > 0x7fffffffu)) ||
         echo_us + device->watchdog_us < now_us) {
         device->stale++;
@@ -249,8 +249,8 @@ static inline int nima_device_take(nima_device *device, const uint8_t *wire, siz
     return 1;
 }
 
-/* Reads what has come, then sends this reading. `command` is the newest command; off and zero once it is older than the
- * watchdog's time. Returns 1 if NIMA Console is heard. */
+/* Reads the received commands, then sends this reading. `command` is the newest command; it is off and zero once it is
+ * older than the watchdog's time. Returns whether NIMA Console sends commands. */
 static inline int nima_device_exchange(nima_device *device, const nima_reading *reading, nima_command *command) {
     uint8_t wire[NIMA_BYTES_MAX];
     const uint64_t now_us = nima_now_us();

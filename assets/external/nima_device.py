@@ -1,11 +1,11 @@
-"""A handle, an arm or a force sensor of your own for NIMA Console: one datagram each way per period (protocol 1).
+"""Connects your own handle, arm or force sensor to NIMA Console: one datagram in each direction per period (protocol 1).
 
     device = Device(HANDLE, "127.0.0.1", 47200, product="my handle", serial="1")
     while True:                                  # about 1000 times a second
         command = device.exchange(handle(position_m=(x, y, z), on=command.on))
-        ...                                      # do what it says; it is off and zero if NIMA Console is not heard in time
+        ...                                      # execute it; it is off and zero while NIMA Console is silent
 
-Python's own library only. Wire format and rules: docs/external-device.md. Licence: MIT OR Apache-2.0. Research use only.
+Requires only the standard library. Wire format and rules: docs/external-device.md. Licence: MIT OR Apache-2.0. Research use only.
 """
 
 import socket
@@ -18,9 +18,9 @@ from typing import NamedTuple
 HANDLE, ARM, SENSOR = 1, 2, 3
 ON, FAULT, THROTTLED, OVERRANGE, INVALID, RAW = (1 << bit for bit in range(6))
 HAS_ORIENTATION, HAS_VELOCITY, HAS_GRIPPER, HAS_ACCELERATION, HAS_ANGULAR_VELOCITY = (1 << bit for bit in range(8, 13))
-# Of an arm, unless `Device` gets another number.
+# Default number of an arm's joints.
 JOINTS = 7
-# Without a command for so long the device is off, s.
+# The device switches off after this time without a command, s.
 WATCHDOG_S = 0.020
 
 _VERSION = 1
@@ -32,7 +32,7 @@ _READS_MAX = 64
 
 
 class Reading(NamedTuple):
-    """What a device measures; made by `handle`, `arm` or `sensor`."""
+    """Measurements of a device; created by `handle`, `arm` or `sensor`."""
 
     kind: int
     numbers: tuple
@@ -42,7 +42,7 @@ class Reading(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What a device must do: all zero unless `on`."""
+    """Command to a device: all zero unless `on`."""
 
     heard: bool
     on: bool
@@ -76,7 +76,7 @@ def handle(position_m, *, on, orientation_wxyz=None, velocity_m_s=None, gripper_
 
 
 def arm(joint_rad, *, on, joint_rad_s=None, joint_nm=None, fault=0):
-    """An arm's reading; angles go on beyond a turn. `on`: it follows the commanded angles."""
+    """An arm's reading; angles continue beyond a turn. `on`: it follows the commanded angles."""
     still = (0.0,) * len(joint_rad)
     return Reading(ARM, (*joint_rad, *(joint_rad_s or still), *(joint_nm or still)), (on and ON) | _bits(fault), fault)
 
@@ -95,7 +95,10 @@ def sensor(
 
 
 class Device:
-    """One device; `joints`, 6 or 7, counts for an arm. Counts what it `sent`, `taken` commands, and those that were `stale`, `damaged`, or taken back for `silences`."""
+    """One device; `joints` is 6 or 7 for an arm, and unused otherwise.
+
+    Counts `sent` datagrams, `taken` commands, outdated or repeated ones (`stale`), `damaged` datagrams, and `silences`.
+    """
 
     def __init__(self, kind, address, port, *, product, serial, joints=JOINTS):
         self.kind = kind
@@ -111,11 +114,11 @@ class Device:
         self.sent = self.taken = self.stale = self.damaged = self.silences = 0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
-        # Only datagrams from there are received from now on.
+        # From now on, only datagrams from this address are received.
         self._socket.connect((address, port))
 
     def exchange(self, reading):
-        """Reads what has come, sends this reading, and returns the newest command."""
+        """Reads the received commands, sends this reading, and returns the newest command."""
         now_us = time.monotonic_ns() // 1000 + 1
         for _ in range(_READS_MAX):
             try:
@@ -123,7 +126,7 @@ class Device:
             except BlockingIOError:
                 break
             except OSError:
-                break  # nobody listens yet
+                break  # no program receives yet
         if self._command.heard and now_us - self._heard_us > self._watchdog_us:
             self.silences += 1
             self._peer_us, self._command = 0, self._off
@@ -149,7 +152,7 @@ class Device:
             self._socket.send(body + zlib.crc32(body).to_bytes(4, "little"))
             self.sent += 1
         except OSError:
-            pass  # nobody listens yet: the next one tries again
+            pass  # no program receives yet: the next datagram tries again
 
     def _take(self, wire, now_us):
         body = wire[:-4]
@@ -164,7 +167,7 @@ class Device:
             self.damaged += 1
             return
         ahead = (sequence - self._peer_sequence) & 0xFFFFFFFF
-        # A command for another program, a repeated one, one from behind, or one that is made of an old reading.
+        # Refuse commands for another program, repeated or reordered commands, and answers to an outdated reading.
         if (
             session != self._session
             or (self._command.heard and not 0 < ahead < 0x80000000)
@@ -181,7 +184,7 @@ class Device:
 
 
 def every(period_s, seconds=float("inf")):
-    """Yields the time since the beginning, s, once per period; periods that passed are left out."""
+    """Yields the time since the beginning, s, once per period; missed periods are skipped."""
     begin = due = time.monotonic()
     while (now := time.monotonic()) - begin < seconds:
         yield now - begin

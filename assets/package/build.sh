@@ -2,7 +2,7 @@
 #   ./dev package           all packages into target/packages
 #   ./dev package --twice   and again from another folder; fails where a byte differs
 #   ./dev package --try     and installs them in minimal systems, as a newcomer would (assets/package/try.sh)
-#   ./dev package --sizes   what the program is made of
+#   ./dev package --sizes   sizes of the program's parts
 # shellcheck shell=bash
 
 # shellcheck source=assets/package/windows.sh
@@ -12,7 +12,7 @@ package_target=x86_64-unknown-linux-gnu
 package_tools=(binutils dpkg python3 python3-venv xz-utils zstd)
 zig_version=0.15.2
 
-# What was not made or not tried, told at the end.
+# Packages that were not built or not tried; listed at the end.
 declare -a package_left_out=()
 leave_out() { package_left_out+=("$1"); }
 tell_left_out() {
@@ -23,7 +23,7 @@ tell_left_out() {
 # One word of the manifest.
 package_version() { sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"$/\1/p' Cargo.toml; }
 
-# The time that stands in every package: that of the last commit.
+# Time stored in every package: the time of the last commit.
 package_epoch() {
   if [ -n "${SOURCE_DATE_EPOCH:-}" ]; then
     echo "$SOURCE_DATE_EPOCH"
@@ -42,13 +42,13 @@ fetch_zig() {
   export NIMA_ZIG ZIG_GLOBAL_CACHE_DIR=$1/zig-cache ZIG_LOCAL_CACHE_DIR=$1/zig-cache
 }
 
-# What the compiler is told, one a line. No path of this computer gets into the program.
+# Arguments of the compiler, one per line. No path of this computer gets into the program.
 package_flags() {
   local target=$1 registry=${CARGO_HOME:-$HOME/.cargo}
   printf '%s\n' "--remap-path-prefix=$registry=/cargo" "--remap-path-prefix=$PWD=/nima" "--remap-path-prefix=$target=/target"
 }
 
-# The last step optimises all crates together, for size: what must be fast was made so in its own crate (Cargo.toml, profile `packages`).
+# The last step optimises all crates together, for size; fast code was optimised for speed in its own crate (Cargo.toml, profile `packages`).
 package_last_step=(-Copt-level=z)
 
 # The program with its symbols, built from this folder.
@@ -85,7 +85,7 @@ finish_program() {
   chmod 755 "$3"
 }
 
-# What the packages say of glibc must hold for every function that the program takes from it.
+# The glibc version stated in the packages must be sufficient for every function that the program uses.
 judge_glibc() {
   local newest
   newest=$(objdump -T "$1" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -n 1)
@@ -96,7 +96,7 @@ judge_glibc() {
   say "the program needs $newest and: $(objdump -p "$1" | awk '$1 == "NEEDED" { printf "%s ", $2 }')"
 }
 
-# Replaces @NAME@ by what is given as NAME=value.
+# Replaces @NAME@ by the value given as NAME=value.
 fill() {
   local text
   text=$(cat "$1")
@@ -174,7 +174,7 @@ make_tar() {
     zstd --quiet --force -19 --single-thread -o "$out/$name.tar.zst"
 }
 
-# All packages of the source in this folder, into $2; what is built goes to $1.
+# Builds all packages of the source in this folder into $2; build products are in $1.
 make_packages() {
   local target=$1 out=$2 inventory=$1/inventory program=$1/$package_target/packages/nima
   rm -rf "$out"
@@ -197,7 +197,7 @@ make_packages() {
   cat "$out/SHA256SUMS"
 }
 
-# The same source in a folder of another name, built into a folder of its own.
+# The same source in a folder with another name, built into a separate folder.
 make_packages_again() {
   local elsewhere=$1/another-folder-for-the-same-source
   rm -rf "$elsewhere"

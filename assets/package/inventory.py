@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the packages' program is made of, from what cargo tells: an SBOM (CycloneDX), the licence texts of every crate in it, and the list of crates
+"""Contents of the packages' program, from the output of cargo: an SBOM (CycloneDX), the licence texts of every crate in it, and the list of crates
 that is put into the program itself (the section .dep-v0, which `cargo audit bin` reads).
 
 Fails, with the crates' names, when there is no licence text for one of them.
@@ -16,9 +16,9 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 LICENCE_FILE = re.compile(r"(licen[cs]e|copying|copyright|notice|unlicense|ofl|ufl)", re.IGNORECASE)
-# Names of the texts that lie in a folder of a crate, beside what they are for, and not in files called LICENSE.
+# Licence texts in a folder of a crate, next to the files to which they apply, that are not in files called LICENSE.
 KNOWN_FILES = {"OFL.txt": "OFL-1.1", "UFL.txt": "Ubuntu-font-1.0"}
-# The one licence whose text has no place for names: it stands for crates that offer it and bring no file.
+# The only licence whose text contains no names: used for crates that offer it and have no file.
 STANDARD = "Apache-2.0"
 
 
@@ -65,7 +65,7 @@ def linked(metadata, tree):
 
 
 def licence_files(package):
-    """The licence files of a crate: beside its manifest, and in the folders below it for what lies there (fonts)."""
+    """Licence files of a crate: next to its manifest, and in its folders for the files there (fonts)."""
     folder = Path(package["manifest_path"]).parent
     files = [path for path in folder.iterdir() if path.is_file() and LICENCE_FILE.match(path.name)]
     if package.get("license_file"):
@@ -78,7 +78,7 @@ def licence_files(package):
 
 
 def licences(packages, standard_text):
-    """Texts with the crates that they belong to; names the crates for which there is none."""
+    """Texts with the crates to which they belong; names the crates without a text."""
     texts, without = {}, []
     for package in packages:
         who = f"{package['name']} {package['version']}"
@@ -97,7 +97,7 @@ def licences(packages, standard_text):
 
 
 def told(texts, more):
-    """One document: each text once, below the names of the crates that it belongs to."""
+    """One document: each text once, below the names of its crates."""
     parts = ["The program `nima` contains the libraries named below, each under the licence that follows its name.\n"]
     for text, whose in texts + more:
         names = "\n".join(f"{who}: {licence}" for who, licence in sorted(whose))
@@ -110,7 +110,7 @@ def purl(package):
 
 
 def edges(metadata, packages):
-    """For each package the numbers of those that it is linked with."""
+    """For each package, the indices of its linked packages."""
     number = {one["id"]: index for index, one in enumerate(packages)}
     nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
     result = []
@@ -147,7 +147,7 @@ def component(package, sums):
 
 
 def sbom(metadata, packages, sums, program, epoch):
-    """CycloneDX 1.5. Its serial number is made of what it lists, so that the same program has the same one."""
+    """CycloneDX 1.5. Its serial number is computed from its list, so that the same program has the same number."""
     root = next(one for one in packages if one["name"] == program)
     whole = {"type": "application", "bom-ref": purl(root), "name": program, "version": root["version"],
              "licenses": [{"expression": root["license"]}]}

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What somebody does in the first minutes with an installed package, as an ordinary user in a minimal system: a force on the virtual clock, the window
+# The first minutes of a new user with an installed package, as an ordinary user in a minimal system: a force on the virtual clock, the window
 # with its force, the devices of the emulated rig. Run by try.sh, which gives the display; prints one line for each.
 set -eu
 cd "$HOME"
@@ -7,7 +7,7 @@ export XDG_RUNTIME_DIR="$HOME/run"
 mkdir -p "$XDG_RUNTIME_DIR"
 chmod 700 "$XDG_RUNTIME_DIR"
 
-# Of a session: seconds, the largest rendered force (N), how often it rose above half of that, and when it first exceeded 0.1 N.
+# Prints numbers of a session: seconds, the largest rendered force (N), how often it rose above half of that, and when it first exceeded 0.1 N.
 force_of() {
   rm -f table.csv
   nima export "$1" --out table.csv >/dev/null
@@ -35,7 +35,7 @@ nima run --virtual --seconds 10 --record virtual.mcap --json >virtual.json
 printf 'virtual clock: %s\n' "$(force_of virtual.mcap)"
 
 if [ -n "${DISPLAY:-}" ]; then
-  # No option but the end: what a newcomer sees.
+  # No option except the end time, as for a new user.
   nima console --exit-after 8 --frames frames.json --screenshot window.png
   session=$(find "$HOME/.local/share/nima-console/sessions" -name '*.mcap' | sort | tail -n 1)
   printf 'window: %s\n' "$(force_of "$session")"

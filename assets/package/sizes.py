@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What the packages' program is made of, in bytes: `sizes.py PROGRAM_WITH_SYMBOLS [--rows N]`. Its sections, and its code by crate. A function of the
-standard library counts to the first other crate in its name; those whose names hold none of the types that they are made for stay with it."""
+"""Sizes of the parts of the packages' program, bytes: `sizes.py PROGRAM_WITH_SYMBOLS [--rows N]`. Its sections, and its code by crate. A function of the
+standard library counts for the first other crate in its name, or for the standard library if its name contains no type of another crate."""
 
 import re
 import subprocess

@@ -49,7 +49,7 @@ judge_files() {
   return $failed
 }
 
-# What can be seen of the .rpm without a system that uses it.
+# Checks of the .rpm that need no system that uses it.
 judge_rpm() {
   local rpm=$1
   [ -e "$rpm" ] && command -v rpm >/dev/null || { leave_out "the .rpm was not tried: it or rpm is missing"; return 0; }
@@ -57,7 +57,7 @@ judge_rpm() {
   rpm -K --nosignature "$rpm" >&2
 }
 
-# Runs a command in a system of its own: its processes end and its mounts are gone with it.
+# Runs a command in a separate system: its processes and mounts end with it.
 inside() {
   local root=$1
   shift
@@ -233,7 +233,7 @@ window_in_wine() {
   local work=$1 nima=$2 screen status=0
   Xvfb :97 -screen 0 1600x1000x24 -nolisten tcp -noreset -ac >/dev/null 2>&1 &
   screen=$!
-  # What wine started without a display knows none.
+  # Processes that wine started without a display have none.
   end_wine "$work"
   sleep 3
   try_display=:97 in_wine "$work" wine "$nima" console --exit-after 8 --frames frames.json --screenshot window.png || status=1
@@ -261,7 +261,7 @@ walk_through_windows() {
   installed=$(find "$work/wine" -path '*/Programs/NIMA Console/nima.exe')
   say "wine, installed by the installer: $(in_wine "$work" wine "$installed" --version | tr -d '\r')"
   in_wine "$work" wine "${installed%/*}/uninstall.exe" /S || return
-  # It goes on from a copy of itself.
+  # It continues from a copy of itself.
   sleep 5
   installed=$(find "$work/wine" -path '*NIMA Console*')
   [ -z "$installed" ] || { say "left behind: $installed"; return 1; }

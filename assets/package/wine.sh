@@ -1,4 +1,4 @@
-# Programs for Windows under wine, each user with a wine of its own in a folder. Sourced by try.sh and by ./dev windows.
+# Programs for Windows under wine, each user with a separate wine in a folder. Sourced by try.sh and by ./dev windows.
 # shellcheck shell=bash
 
 wine_tools=(wine wine64)

@@ -226,7 +226,7 @@ def identify(
         How *literal* and *linear* interpret the paper: ``"increments"`` or ``"displacement"``; ``"window"`` or ``"next"``; a free
         constant force; ridge per row of the window, 0 to 1e6.
     parcels
-        Also return the messages over the link in each sample.
+        Return the messages over the link in each sample, too.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What the tests share: the program whose results must be the same, and recordings."""
+"""Shared by the tests: the program whose results must be the same, and recordings."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def running(program: Program, tmp_path: Path) -> Iterator[tuple[subprocess.Popen
         for line in process.stderr:
             found = re.search(r"OpenIGTLink at (\S+):", line)
             if found:
-                # What it says later must not fill the line.
+                # Later output must not fill the pipe.
                 threading.Thread(target=process.stderr.read, daemon=True).start()
                 yield process, found.group(1), path
                 break

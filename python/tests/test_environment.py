@@ -30,7 +30,7 @@ def test_the_checker_of_gymnasium_passes(control):
     environment = nima.Environment("peg_transfer", control=control, substeps=10)
     assert isinstance(environment, gymnasium.Env)
     with warnings.catch_warnings():
-        # What it warns of is a matter of taste for other tasks: spaces without bounds, and none that is normalised.
+        # Ignore its warnings, which are recommendations for other tasks: spaces without bounds, and none that is normalised.
         warnings.simplefilter("ignore", UserWarning)
         check_env(environment, skip_render_check=True)
 

@@ -32,7 +32,7 @@ def agrees(result: nima.Identification, program: Program, out: Path, *arguments:
     """The program's figures and trace for these arguments equal this result."""
     figures = program.json("identify", *arguments, "--out", out)
     ours = dict(result.figures)
-    # What differs from run to run: how long a tick took.
+    # Differs from run to run: the time of a tick.
     assert figures.pop("tick_us").keys() == ours.pop("tick_us").keys()
     assert ours == figures
     for axis, name in enumerate(ours["axes"]):

@@ -17,7 +17,7 @@ import nima
 from conftest import motion
 
 FOLDER = Path(__file__).resolve().parents[1]
-# Where a page says that a run is watched.
+# A page that watches a run.
 PLACE = "127.0.0.1:18944"
 NOTEBOOKS = sorted((FOLDER / "notebooks").glob("*.ipynb"))
 

@@ -65,7 +65,7 @@ impl<T> FromLoop<T> {
     /// Returns whether the loop's end has gone and nothing waits. Values that it sent before are returned first.
     pub fn has_ended(&self) -> bool {
         let end = self.end();
-        // In this order: the loop sends nothing after it has gone.
+        // Check in this order: once the loop's end has gone, no further value can arrive.
         end.is_abandoned() && end.is_empty()
     }
 

@@ -135,7 +135,7 @@ fn about(table: &BTreeMap<String, String>) -> BTreeMap<String, String> {
     about
 }
 
-/// Returns the entries of a table with these keys whose values are among these words or are numbers.
+/// Returns the entries of a table with these keys whose values are numbers or in the list of this key.
 fn kept(table: &BTreeMap<String, String>, words: &[(&str, Vec<&str>)], numbers: &[&str]) -> BTreeMap<String, String> {
     let word = |(key, words): &(&str, Vec<&str>)| {
         Some(((*key).to_owned(), table.get(*key).filter(|value| words.contains(&value.as_str()))?.clone()))

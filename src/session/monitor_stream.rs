@@ -108,7 +108,7 @@ impl MomentWriter {
                 number(&mut bytes, word);
             }
         }
-        // Their moment is the first of the next batch.
+        // The remaining events belong to the first moment of the next batch.
         for (moment, _) in &mut self.events {
             *moment = 0;
         }

@@ -75,7 +75,7 @@ impl Worlds {
         for (world, outputs) in arms.iter_mut().zip(&*outputs) {
             if let Some(world) = world {
                 world.wait(outputs.tip_command_m.is_none());
-                // The worlds have a common clock.
+                // The worlds share one clock.
                 left_s = left_s.max(world.accept(now_s, outputs));
             }
         }

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Find phrases that make the project's English read like a translation.
 
-    lint.py [ROOT] [--only NAME[,NAME]] [--kinds rs,md,git,id] [--counts] [--sample N [--seed S]] [--git-since REV]
+    lint.py [ROOT] [--only NAME[,NAME]] [--kinds rs,md,other,git,id] [--counts] [--sample N [--seed S]] [--git-since REV]
             [--max TOTAL | --ceiling FILE]
 
-Reads comments, doc comments and strings of .rs files, .md files, commit subjects (git log) and, with `--kinds id`,
-the names of modules and types. Files that git ignores are skipped. Prints `path:line: [pattern] "match" -> suggestion`,
+Reads comments, doc comments and strings of .rs files, .md files, with `--kinds other` the comments of scripts, device
+clients and settings files, commit subjects (git log) and, with `--kinds id`, the names of modules and types. Files that git ignores are skipped. Prints `path:line: [pattern] "match" -> suggestion`,
 then a count per pattern. Exit status 1 when there are more hits than `--max`, or than the number in the file
 `--ceiling`, or when that number is higher than in the last commit (default: never fails). Python 3.8, standard library
 only.
@@ -47,7 +47,11 @@ pattern("in-place-of", r"\bin place of\b", "instead of")
 pattern("anew", r"\banew\b|\bbegun again\b", "again; restart, re-measure, redraw, retrain")
 pattern("goes-on", r"\b(?:go|goes|going|went) on\b(?! (?:strike|for ever))", "continue, keep running, resume, proceed")
 pattern("in-force", r"\b(?:in|into|out of) force\b(?! space)", "active, applied, current, in use; to activate")
-pattern("hand-over", r"\b(?:hands|handed) (?:over|in|on)\b|\bhand (?:it|them|this) (?:over|on)\b", "pass, forward, deliver; (time) is passed in as an argument")
+# Not the noun: "two hands on a ring", "changes hands in mid-air".
+pattern("hand-over",
+        r"(?:(?<!two )(?<!the )(?<!both )(?<!changes )(?<!brakes )(?<!^)\bhands(?! in phase)|\bhanded) (?:over|in|on)\b"
+        r"|\bhand (?:it|them|this) (?:over|on)\b",
+        "pass, forward, deliver; (time) is passed in as an argument")
 pattern("take-verb",
         r"\btake[sn]? (?:it|them|this|that|what|a \w+|the \w+)? ?for (?:a|an|the|one|that|nothing)\b|\btook .{1,20} for\b"
         r"|\bpass(?:es|ed)? over\b|\btakes? back\b|\btaken back\b|\bput(?:s)? away\b",
@@ -81,7 +85,7 @@ pattern("whoever", r"\bwhomever\b|\bwhoever\b|(?:^|[.;:(] )[Ww]ho (?:[a-z]+s|has
         "anyone who, a user/client/reader who; regardless of")
 pattern("personified",
         r"\b" + THING + r" (?:alone )?(?:knows?|knew|learns?|learnt|sees?|hears?|heard|wants?|believes?|thinks?|obeys?|minds?|promises?|"
-        r"trusts?|hopes?|likes?|feels?|forgets?|listens?)\b",
+        r"trusts?|hopes?|likes|feels?|forgets?)\b",
         "has, receives, stores, requires, supports, detects; is rejected/reported", "cdmg")
 # Sentence shapes -------------------------------------------------------------------------------------------------------
 pattern("what-clause",
@@ -103,7 +107,7 @@ pattern("is-no", r"(?<!there )(?<!here )\b(?:is|are|was|were) no (?!longer|more\
 pattern("that-of", r"\b(?:is|are|was|were) (?:that|those) of\b",
         "repeat the noun, or use a possessive (the arm's, the file's)", "cdmg")
 pattern("most-least",
-        r"^(?:Most|Least|Greatest) (?!of\b|importantly|likely)[a-z]+|\b(?:the|and) (?:most|least) that\b|, (?:most|least) first\b"
+        r"^(?:Most|Least|Greatest) (?!of\b|importantly|likely|squares\b|one\b)[a-z]+|\b(?:the|and) (?:most|least) that\b|, (?:most|least) first\b"
         r"|\b(?:for|of|by|every|to|has|have|after|than|one in) so (?:many|much|long)\b(?! (?:as|that|more|the))",
         "maximum number of, minimum, upper limit; this many / this long", "cdsm")
 pattern("there-is", r"\b(?:is|are|was|were) (?:not )?there\b(?! (?:is|are|was|were|no|a|an|any)\b)|\bwhat is (?:not )?there\b",
@@ -116,7 +120,7 @@ pattern("words", r"\bin words\b|\bwords (?:of|for|over|on|that|are|stand)\b|\b(?
         "text, message, wording, label", "cdsmg")
 pattern("private-noun",
         r"\b(?:in the past\b|the past (?:on|shows|is|has)\b|way of the (?:data|hand|tip)\b|a hole in|holes? in (?:the|a) (?:journal|file|session)\b|"
-        r"walked (?:on|in|by|as)\b|is walked\b|parcels?\b|second place\b|which door\b|bites?\b(?= within)|is withheld\b)",
+        r"walked (?:on|in|by|as)\b|is walked\b|parcels?\b|second place\b|which door\b|bites?\b(?= within))",
         "playback/recorded session, path, gap, results, tested end to end, emergency release, packet, protocol, measurements, backup file",
         "cdsmg")
 # Commit subjects -------------------------------------------------------------------------------------------------------
@@ -231,13 +235,36 @@ def place(path, root):
     return path if os.path.isfile(root) else os.path.relpath(path, root)
 
 
+def comments(path, name):
+    """(kind, place, text) of the comments, descriptions and docstrings of a file that is neither Rust nor Markdown."""
+    mark = r"(?:^|\s)(?://|/?\*+) ?(.*)" if path.endswith((".c", ".h")) else r"(?:^|\s)# ?(.*)"
+    quoted = False
+    with open(path, encoding="utf8", errors="replace") as file:
+        for number, line in enumerate(file, 1):
+            found = re.search(mark, line) or re.match(r'description = "(.*)"', line)
+            if path.endswith(".py") and (quoted or '"""' in line):
+                yield "c", f"{name}:{number}", line.strip().strip('"')
+            elif found:
+                yield "c", f"{name}:{number}", found.group(1)
+            quoted ^= line.count('"""') % 2 == 1
+
+
 def units(root, kinds, since):
     """(kind, place, text): one physical line of prose each."""
     if "rs" in kinds:
         for path in walk(root, ".rs"):
+            example = False
             with open(path, encoding="utf8", errors="replace") as file:
                 for kind, line, text in lex(file.read()):
+                    # Skip the code of examples in doc comments.
+                    example = kind == "d" and example != text.startswith("```")
+                    if example:
+                        continue
                     yield kind, f"{place(path, root)}:{line}", text
+    if "other" in kinds:
+        for path in walk(root, (".toml", ".py", ".c", ".h", ".sh", ".R", ".rules", "dev", "ci/run")):
+            if os.path.abspath(path) != os.path.abspath(__file__):
+                yield from comments(path, place(path, root))
     if "md" in kinds:
         for path in walk(root, ".md"):
             code = False

@@ -1,4 +1,4 @@
-# Expected numbers of R: reads the data sets that analysis.py hands over, and writes what R makes of them. `Rscript analysis.R DATA OUT`
+# Expected numbers of R: reads the data sets of analysis.py, and writes the results of R. `Rscript analysis.R DATA OUT`
 suppressMessages({library(jsonlite); library(lmerTest); library(coin)})
 arguments <- commandArgs(trailingOnly = TRUE)
 sets <- fromJSON(arguments[1], simplifyVector = TRUE, simplifyDataFrame = FALSE, simplifyMatrix = TRUE)
@@ -16,7 +16,7 @@ signed_rank <- function(set) {
   if (!any(duplicated(abs(d))) && !any(d == 0) && length(d) <= 50) {
     r <- suppressWarnings(wilcox.test(d, exact = TRUE, conf.int = TRUE))
     n <- length(d)
-    # The attained confidence, which R itself tells only when it is far off.
+    # The attained confidence, which R itself reports only if it is far off.
     out$location <- c(r$estimate, r$conf.int[1:2], 1 - 2 * psignrank(max(qsignrank(0.025, n), 1) - 1, n))
   }
   out

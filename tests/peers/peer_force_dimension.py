@@ -80,7 +80,7 @@ def run(nima):
     return [peer]
 
 
-# What follows runs in the processes of the cases.
+# The code below runs in the processes of the cases.
 
 
 def check(what, good, got=None):

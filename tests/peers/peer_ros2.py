@@ -72,7 +72,7 @@ def types():
 
 
 def graph_type():
-    """What a participant of ROS 2 (Iron or newer) says of its nodes."""
+    """Nodes that a participant of ROS 2 (Iron or newer) announces."""
     from cyclonedds.idl import IdlStruct
     from cyclonedds.idl.types import array, sequence, uint8
 
@@ -166,7 +166,7 @@ class Reader:
         return False
 
     def offered(self):
-        """What others publish and what they subscribe to: by topic its type, and the policies."""
+        """Publications and subscriptions of others: type and policies of each topic."""
         from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
         from cyclonedds.core import Policy
 

@@ -46,7 +46,7 @@ def read(path):
 
 
 def value(path, messages, field):
-    """What a path of a layout such as `right/forces.effort[3]` leads to."""
+    """Value at a path of a layout, such as `right/forces.effort[3]`."""
     at = int(field[field.index("[") + 1 : -1])
     return getattr(messages[path][-1][2], field[: field.index("[")])[at]
 

@@ -1,7 +1,7 @@
 """Runs the unit tests, cross-built for Windows, under wine: one program for each crate, each in the folder of its crate, as cargo does.
 
-Reads what `cargo test --no-run --message-format=json` wrote. At the end it tells how many tests passed and failed, and which were not judged, each with
-its reason. Fails when a test fails, a program does not end, or `left_out.txt` names a test that is not there.
+Reads what `cargo test --no-run --message-format=json` wrote. At the end it prints how many tests passed and failed, and which were not judged, each with
+its reason. Fails when a test fails, a program does not end, or `left_out.txt` names a test that does not exist.
 """
 
 import argparse
@@ -26,7 +26,7 @@ class Program:
     def __init__(self, message):
         self.file = message["executable"]
         self.folder = pathlib.Path(message["manifest_path"]).parent
-        # What cargo calls it: `path+file:///.../src/core#nima-core@0.2.0`
+        # Cargo's name of the crate: `path+file:///.../src/core#nima-core@0.2.0`
         self.crate = re.sub(r".*[#/]([^#/@]+)@[^@]*$", r"\1", message["package_id"])
         self.results = {}
         self.too_busy = []
@@ -50,7 +50,7 @@ class Program:
         return said
 
     def judge_again(self, limit_s):
-        """What the machine was too busy for, alone and one after the other."""
+        """Tests for which the machine was too busy, alone and one at a time."""
         _, said = run([*wine(self.file), "--exact", "--show-output", "--test-threads", "1", *self.too_busy], self.folder, limit_s)
         self.results.update(RESULT.findall(said))
         self.too_busy = self.not_judged(said)
@@ -94,12 +94,12 @@ def wine(program):
 
 
 def run(command, folder, limit_s):
-    """What the command ended with, or nothing if it did not within its time, and what it said."""
+    """Returns the exit status of the command, or nothing after a timeout, and its output."""
     started = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
     try:
         said, status = started.communicate(timeout=limit_s)[0], started.returncode
     except subprocess.TimeoutExpired:
-        # What it started itself may hold the pipe for longer.
+        # A child process may hold the pipe for longer.
         started.kill()
         try:
             said, status = started.communicate(timeout=10)[0], None

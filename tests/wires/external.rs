@@ -81,7 +81,7 @@ impl Examples {
         self.start_with(name, ports, &[])
     }
 
-    /// The same with more words on its command line.
+    /// The same with more arguments on its command line.
     pub(super) fn start_with(&self, name: &str, ports: &[u16], more: &[String]) -> Running {
         let mut process = match self {
             Self::C(folder) => Process::new(folder.join(name)),

@@ -103,7 +103,7 @@ impl<S: WindowSummary> SlidingWindow<S> {
         let p = self.position;
         let (this, last) = if self.this_half_first { (0, b) } else { (b, 0) };
         self.rows[this + p] = *row;
-        // Its last row first, so that each step adds one older row to the ending.
+        // Read the last block backwards, so that each step extends its ending by one older row.
         let backward_row = self.rows[last + b - 1 - p];
         S::add_three(
             [&mut self.since_last_block, &mut self.since_this_block, &mut self.backwards],

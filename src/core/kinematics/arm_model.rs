@@ -274,7 +274,7 @@ fn check_joint(joint: usize, of: &ChainJoint) -> Result<(), ArmModelError> {
     value("axis length", axis, axis.is_finite() && axis > 1e-6, "above 0")?;
     let [low_rad, high_rad] = of.range_rad;
     let is_possible = |angle_rad: f64| angle_rad.is_infinite() || angle_rad.abs() <= ANGLE_MAX_RAD;
-    // NaN is not wide.
+    // False for NaN.
     let is_wide = high_rad - low_rad >= RANGE_MIN_RAD;
     if !is_wide || !of.range_rad.into_iter().all(is_possible) {
         return Err(ArmModelError::Range { joint, low_rad, high_rad });

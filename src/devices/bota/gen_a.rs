@@ -11,7 +11,7 @@ pub type Parameter = (u8, u8);
 
 /// Requested state: one of [`INIT`], [`CONFIG`], [`RUN`].
 pub const STATE: Parameter = (1, 2);
-/// Offset of the first component; the other five have the next numbers. f32.
+/// Offset of the first component, f32; the offsets of the other five have the following numbers.
 pub const OFFSET: Parameter = (2, 1);
 /// Frame format: 0 and 1 force and torque, 2 and 3 with the inertial unit.
 pub const MODE: Parameter = (3, 1);

@@ -1,4 +1,4 @@
-//! A probe for each driver. It opens the device like a rig and waits for the same time.
+//! A probe for each driver. It opens the device as a rig does and waits for the same time.
 
 use std::time::Duration;
 

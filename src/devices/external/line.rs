@@ -45,7 +45,7 @@ impl SentTimes {
 pub(super) struct ExternalLine {
     datagrams: Box<dyn TransportDatagrams>,
     kind: ExternalKind,
-    /// Of an arm; every command to it, also the last one, has this many angles.
+    /// Number of joints of an arm: every command to it, also the last one, has this many angles.
     joints: usize,
     session: u32,
     /// Sequence number and time of the newest accepted datagram.

@@ -51,7 +51,7 @@ pub enum Damage {
 const BLACK_MEAN: u32 = 6;
 /// Maximum brightness of any pixel of a black image.
 const BLACK_MAX: u32 = 40;
-/// One pixel of this many is checked.
+/// One pixel in this many is checked.
 const BLACK_STEP: usize = 61;
 
 impl std::fmt::Debug for DecodedImage {

@@ -19,7 +19,7 @@ const SPREAD: f64 = 1.0;
 /// Maximum distance between touched corners and a rigid board, m. The error of a touch with the tip; a larger one is a
 /// bent board or a wrong size of its squares.
 const RIGID_M: f64 = 0.002;
-/// Maximum error of held-out corners, in widths of the image: 10 px of 1280.
+/// Maximum error of held-out corners, as a fraction of the image width: 10 px of 1280.
 const HELD_OUT: f64 = 10.0 / 1280.0;
 const STEPS: usize = 40;
 

@@ -1,9 +1,9 @@
 //! The rigs of a department: their identities, their watchers, and their published data.
 //!
 //! Everything other than the stream of the loop: finding rigs, any number of display-only screens, and recordings on
-//! another machine. The transport is zenoh over TLS with a certificate on both sides. A rig listens and publishes; a
-//! watcher can only subscribe and query, so that nothing from outside reaches the loop. All of it runs on the
-//! recorder's thread and on zenoh's; data that they cannot send in time are dropped.
+//! another machine. The transport is zenoh over TLS with a certificate on both sides. A rig accepts connections
+//! and publishes; a watcher can only subscribe and query, so that nothing from outside reaches the loop. All of it runs
+//! on the recorder's thread and on zenoh's; data that they cannot send in time are dropped.
 //!
 //! | module | holds |
 //! |---|---|

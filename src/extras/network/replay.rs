@@ -60,7 +60,7 @@ impl ReplayWindow {
         self.check(number)?;
         let (word, bit) = place(number);
         if number >= self.next {
-            // Clear the words that enter the window, at most all of them.
+            // Clear the entries that enter the window, at most all of them.
             let old_word = self.next.saturating_sub(1) / 64;
             let fresh = (number / 64).saturating_sub(old_word).min(WORDS as u64);
             for back in 0..fresh {

@@ -20,9 +20,8 @@ use crate::{
 
 /// Maximum age of an echo that is used, s.
 const EXCHANGE_MAX_S: f64 = 30.0;
-/// One in this many datagrams contains a report, and so do all of the first datagrams. A report in every datagram does
-/// not improve the clock: at 20 ms of jitter its error scatters between 1 and 7 ms for a report in every first, second
-/// and fourth datagram.
+/// One in this many datagrams contains a report; the first datagrams all contain one. More reports do not improve the
+/// clock: at 20 ms of jitter its error is 1 to 7 ms, whether every, every second or every fourth datagram has a report.
 const REPORT_EVERY: u64 = 2;
 
 /// Settings of a stream.

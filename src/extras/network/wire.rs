@@ -1,10 +1,10 @@
 //! The format of a datagram.
 //!
-//! Every datagram starts with the version of the protocol and its kind. Those of a handshake continue with [`MAGIC`]
-//! and a number chosen by their sender, so that an answer cannot be forged without seeing the request; these fourteen
-//! bytes and a refusal stay the same in every version. Those of a session continue with the number of the session at
-//! the receiver and the lower half of their own number; the rest is encrypted: a [`DatagramHead`] with the time stamps,
-//! then the payloads, newest first.
+//! Every datagram starts with the version of the protocol and its kind. A datagram of a handshake continues with
+//! [`MAGIC`] and a number chosen by its sender, so that an answer cannot be forged without seeing the request; these
+//! fourteen bytes and a refusal stay the same in every version. A datagram of a session continues with the session's
+//! number at the receiver and the lower half of its sequence number; the rest is encrypted: a [`DatagramHead`] with the
+//! time stamps, then the payloads, newest first.
 //!
 //! Numbers are little-endian.
 

@@ -60,7 +60,7 @@ mod tests {
             assert_eq!(open_address(given), open);
         }
         let mut rig = RigConfig::load("paper").unwrap();
-        assert_eq!(rig.clone().without_secrets(), rig, "nothing is secret in a rig that comes with the program");
+        assert_eq!(rig.clone().without_secrets(), rig, "a built-in rig contains no secret");
         rig.endoscope =
             Some(EndoscopeConfig { url: "http://eva:s3cret@cam/".to_owned(), ..EndoscopeConfig::default() });
         let right = rig.devices.as_mut().unwrap().right.as_mut().unwrap();

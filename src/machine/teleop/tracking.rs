@@ -89,7 +89,7 @@ impl TrackingLag {
         // Over several ticks, because the noise of one tick is faster than a slow hand.
         let span = self.stride * 4;
         let moving = (command_m - self.back(span)).norm() > self.step_min_m * span as f64;
-        // Every candidate needs a command from its time.
+        // Each candidate lag is compared with the command of that time, so the command must exist.
         if moving && self.filled > behind + self.stride * CANDIDATES {
             self.compare(tip_m, behind);
         }

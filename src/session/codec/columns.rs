@@ -1,6 +1,6 @@
 //! Columns of words, packed so that a general compressor finds repetitions.
 //!
-//! The words of one field of all ticks of a block form a column. Each column is stored in the form that needs the
+//! All words of one field of all ticks of a block form a column. Each column is stored in the form that needs the
 //! fewest bytes: one word for all, a reference to an equal column, or differences, whose bytes are sorted by their
 //! position in the word (byte shuffle); positions that are zero everywhere are left out.
 
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::{CodecError, WordSink, WordSource};
 
-/// Maximum number of words of a column: no block has more ticks.
+/// Maximum length of a column, in words: no block has more ticks.
 const WORDS_MAX: u64 = 4096;
 
 #[derive(Clone, Debug, Default)]

@@ -1,4 +1,4 @@
-//! Values of the loop as words of 64 bits, and back, exact to the bit.
+//! Converts values of the loop to 64-bit words and back, exact to the bit.
 //!
 //! Every value is split into words in a fixed order. A structure is split by all its fields, so that a new field does
 //! not compile until it is handled. The same words go into the columns of a journal and into the digest that a replay
@@ -39,7 +39,7 @@ pub enum CodecError {
     /// Not enough words.
     #[error("it is shorter than it states")]
     Short,
-    /// Words are left over.
+    /// More words than needed.
     #[error("it is longer than it states")]
     Long,
     /// A word without a meaning.
@@ -52,7 +52,7 @@ pub(crate) trait ToWords {
     /// Number of columns, used or not.
     const COLUMNS: usize;
 
-    /// Writes its words.
+    /// Writes the value as words.
     fn put(&self, to: &mut impl WordSink);
 }
 

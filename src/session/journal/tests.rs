@@ -315,7 +315,7 @@ proptest! {
         let (number, message) = decode(&encoded(&steps)).unwrap();
         let JournalMessage::Block(block) = message else { panic!("{message:?}") };
         prop_assert_eq!((number, block.first_tick, block.rows.len()), (0, 0, steps.len()));
-        // NaN is not equal to itself, so compare the words, that is, the bits.
+        // NaN is not equal to itself, so compare the bits.
         let mut again = BlockWriter::default();
         let mut noted = block.noted.iter().peekable();
         for (i, row) in block.rows.iter().enumerate() {

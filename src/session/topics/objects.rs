@@ -267,7 +267,7 @@ fn numbers(jaws: &JawState) -> [f64; JAWS.len()] {
     numbers
 }
 
-/// Returns the jaws of their numbers, in the order of [`JAWS`].
+/// Returns the jaws described by these numbers, in the order of [`JAWS`].
 pub(crate) fn jaws_of(numbers: &[f64]) -> Option<JawState> {
     let numbers: &[f64; JAWS.len()] = numbers.try_into().ok()?;
     let touched = [numbers[8], numbers[9], numbers[10], numbers[11]];

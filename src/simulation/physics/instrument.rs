@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// Maximum opening of the jaws, rad; graspers open to about 70 degrees.
 pub const OPENING_MAX_RAD: f64 = 1.4;
-/// Farther from the origin an instrument counts as absent, m.
+/// An instrument farther from the origin than this counts as absent, m.
 const FARTHEST_M: f64 = 10.0;
 
 /// Pose of an instrument. Workspace frame, z up.

@@ -65,7 +65,7 @@ pub fn degrees_ui(ui: &mut Ui, live: &LiveState, state: &mut DegreesState) {
             let [name, meaning] = key(rule);
             key_ui(ui, colour, name, meaning);
         }
-        // As one piece: a long language moves it to the next row.
+        // Added as one piece, so that a long text moves to the next row as a whole.
         ui.add(Label::new(small(text::degrees::last_minutes(DEGREES_S / 60.0))).extend());
     });
     switches_ui(ui, live, state);

@@ -1,4 +1,4 @@
-//! The panels of the Technician view: what a panel is, and the list of all of them.
+//! The panels of the Technician view: the trait [`Panel`], and the list of all panels.
 //!
 //! A new panel takes a file with its [`Panel`], a file with its texts, and a line in the list below.
 
@@ -14,7 +14,7 @@ use crate::roles::{Panels, Wishes};
 
 /// A panel, with the state that only it uses.
 pub trait Panel: Debug + Default {
-    /// Title on its tab, in the menu, and of its own window.
+    /// Title on its tab, in the menu and on its own window.
     const NAME: Text;
     const MEANING: Text;
     const SIZE: PanelSize;
@@ -54,7 +54,7 @@ impl PanelSize {
     }
 }
 
-/// What the panels show, and what takes their commands.
+/// The data that panels show, and the receivers of their commands.
 #[derive(Debug)]
 pub struct PanelContext<'a> {
     pub live: &'a mut LiveState,
@@ -121,7 +121,7 @@ panels! {
     Field, field: crate::field::FieldPanel;
     Traces, traces: crate::traces::TracesPanel;
     ForceSpace, force_space: crate::force_space::ForceSpacePanel;
-    // The gates were once a panel of their own.
+    // The gates were once a separate panel.
     #[serde(alias = "gates")]
     Safety, safety: crate::safety::SafetyState;
     Feedback, feedback: crate::feedback::FeedbackPanel;

@@ -170,8 +170,8 @@ fn row_ui(ui: &mut Ui, entry: &CommandEntry, reach: Availability, is_at: bool) -
     response.on_hover_text(hover(entry.does, entry.place.name()))
 }
 
-/// Returns the rows whose names contain all these words, best match first; equal matches with available rows first, in
-/// the order of the table.
+/// Returns the rows whose names contain every word, best match first. Among equal matches available rows come first,
+/// in the order of the table.
 fn found(words: &str, rows: &[PaletteRow]) -> Vec<PaletteRow> {
     let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
     let rank = |(entry, _): &PaletteRow| words.iter().try_fold(0, |sum, word| Some(sum + rank(word, entry)?));

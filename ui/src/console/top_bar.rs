@@ -188,7 +188,7 @@ pub(in crate::console) fn state_ui(ui: &mut Ui, live: &LiveState, state: LoopSta
         LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING.get()),
     };
     let lines = state_lines(live, state);
-    // Two lines with arm names are wider than one line.
+    // Two lines contain the names of the arms, so they are wider.
     let width = if lines.len() > 1 { 156.0 } else { 136.0 };
     let (rect, response) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
     let response = response.on_hover_text(text::top_bar::state_meaning(meaning));

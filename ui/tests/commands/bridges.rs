@@ -13,7 +13,7 @@ use crate::{
     one_line,
 };
 
-/// Messages of a run until one of the text's JSON says that the arm is engaged; the devices of all of them.
+/// Reads the messages of a run until its JSON text reports that the arm is engaged, and checks which devices they name.
 #[test]
 fn a_run_tells_its_poses_and_forces_over_openigtlink() {
     let mut run = Command::new(env!("CARGO_BIN_EXE_nima"))

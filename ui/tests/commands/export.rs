@@ -239,7 +239,7 @@ fn what_is_no_session_is_told_in_one_line() {
     std::fs::write(at("empty.mcap"), []).unwrap();
     std::fs::write(at("foreign.mcap"), "t_s,x_m,fx_n\n0,1,2\n").unwrap();
     std::fs::write(at("cut.mcap"), b"\x89MCAP0").unwrap();
-    std::fs::write(at("newer.mcap"), b"\x89MCAP1\r\n and what comes after it").unwrap();
+    std::fs::write(at("newer.mcap"), b"\x89MCAP1\r\n and more").unwrap();
     let mut other = SessionWriter::create(Path::new(&at("other.mcap")), "another program").unwrap();
     let channel = other.channel("words", Encoding { message_encoding: "text".into(), ..Encoding::default() }).unwrap();
     other.message(channel, 1, b"one").unwrap();

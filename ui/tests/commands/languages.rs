@@ -59,7 +59,7 @@ pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
     pairs
 }
 
-/// Returns the literal at the start of this, and the rest.
+/// Returns the string literal at the start of `source`, and the text after it.
 fn literal(source: &str) -> Option<(String, &str)> {
     let rest = source.trim_start().strip_prefix('"')?;
     let mut escaped = false;

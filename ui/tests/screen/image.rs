@@ -124,7 +124,7 @@ fn of_this_computer<A>(window: &Harness<'_, A>) -> Vec<Rect> {
     let timing = window.query_all_by_label_contains("histogram").chain(window.query_all_by_label("\u{b5}s"));
     let ports = window.query_all_by_label("Plugged into this computer").map(|node| node.rect());
     let below = ports.map(|title| Rect::from_min_max(title.left_bottom(), window.ctx.content_rect().max).expand(16.0));
-    // Their length moves the handle of the scroll bar beside them.
+    // The scroll bar next to these areas changes with their length.
     let with_bar = |area: Rect| area.with_max_x(area.max.x + 16.0);
     timing.map(|node| node.rect()).reduce(Rect::union).map(with_bar).into_iter().chain(below).collect()
 }

@@ -51,7 +51,7 @@ fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
     let before = slider(&harness);
     until(&mut harness, "a contact that lasts", |tick| tick.t_s > 3.5);
     harness.step();
-    assert!(slider(&harness) == before, "what stands below would slip from the hand at the first contact");
+    assert!(slider(&harness) == before, "a control below it would move away under the pointer at the first contact");
     let report = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
     // At the pressed place, the scene's phantom has 300 to 500 N/m.
     let n_m: f64 = report.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();

@@ -29,7 +29,7 @@ fn click(console: &mut Console, place: Pos2, button: PointerButton, modifiers: M
         console.event_modifiers(egui::Event::PointerButton { pos: place, button, pressed, modifiers }, modifiers);
         console.step();
     }
-    // Later clicks are not the second of a double click.
+    // Wait, so that the next click does not count as the second of a double click.
     console.run_steps(20);
 }
 

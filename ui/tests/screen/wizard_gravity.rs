@@ -19,10 +19,14 @@ use crate::{
 };
 
 fn console(scene: Scene, store: &Path) -> Console {
+    console_of_size(scene, store, [1600.0, 1000.0])
+}
+
+fn console_of_size(scene: Scene, store: &Path, size: [f32; 2]) -> Console {
     let rig = RigConfig::load("simulated").unwrap();
     let store = store.to_owned();
     let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
-    shown_at(WIZARD_SPEED, &plan, [1600.0, 1000.0], move |app| app.with_store(&store))
+    shown_at(WIZARD_SPEED, &plan, size, move |app| app.with_store(&store))
 }
 
 fn gravity_scene(flaw: Option<Flaw>) -> Scene {
@@ -47,6 +51,19 @@ fn leave_the_checks(console: &mut Console) {
 
 fn files(folder: &Path) -> usize {
     std::fs::read_dir(folder).map_or(0, Iterator::count)
+}
+
+/// The view wizard has this little room next to the endoscope image.
+#[test]
+fn a_wizard_in_a_narrow_window_is_not_cut_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let width = 940.0;
+    let mut console = console_of_size(gravity_scene(None), folder.path(), [width, 1000.0]);
+    pick(&mut console, "Calibrate gravity…");
+    wait(&mut console, "the checks", |c| shows(c, "Step 1 of 5"));
+    leave_the_checks(&mut console);
+    let drawing = console.get_by_label("Drawing of the required pose").rect();
+    assert!(drawing.right() <= width, "the drawing ends at {}", drawing.right());
 }
 
 #[test]

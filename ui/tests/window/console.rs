@@ -65,6 +65,14 @@ impl<'a> Console<'a> {
         self.tool(&["mouseup", "1"]);
     }
 
+    /// Saves the window as an image, for the pages and for debugging, if `NIMA_PICTURES` names a folder.
+    pub(crate) fn keep_image(&self, name: &str) {
+        if let Some(folder) = std::env::var_os("NIMA_PICTURES") {
+            let path = Path::new(&folder).join(name).with_extension("png");
+            self.x.command("import").args(["-window", "root"]).arg(path).status().unwrap();
+        }
+    }
+
     /// Ends the program as a service manager does; returns the loop's results that it writes.
     pub(crate) fn end(&mut self) -> serde_json::Value {
         assert!(self.x.command("kill").args(["-TERM", &self.process.id().to_string()]).status().unwrap().success());

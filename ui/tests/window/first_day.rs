@@ -37,6 +37,7 @@ impl<'a> Day<'a> {
 
     fn click(&self, place: (i32, i32)) {
         self.clicks.set(self.clicks.get() + 1);
+        self.console.keep_image(&format!("first-day-{:03}", self.clicks.get()));
         self.console.click(place);
         self.console.move_to(NOTHING);
     }
@@ -145,6 +146,7 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         day.follow("the monitor", |day| day.next().is_none());
         day.click(ENGAGE);
         thread::sleep(Duration::from_secs(8));
+        day.console.keep_image("first-day-engaged");
         println!("engaged after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
         let summary = day.console.end();
         assert_eq!(summary["final_state"], "engaged", "{summary}");

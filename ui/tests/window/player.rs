@@ -4,7 +4,7 @@
 //! by its colour, and a ring in the jaws by a second circle.
 #![cfg(target_os = "linux")]
 use std::{
-    path::{Path, PathBuf},
+    path::PathBuf,
     process::Command,
     thread,
     time::{Duration, Instant},
@@ -230,12 +230,8 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// For debugging: saves an image in the folder given by `NIMA_PICTURES`.
     pub(crate) fn keep_image(&self) {
-        if let Some(folder) = std::env::var_os("NIMA_PICTURES") {
-            let path = Path::new(&folder).join("playing.png");
-            self.console.x.command("import").args(["-window", "root"]).arg(path).status().unwrap();
-        }
+        self.console.keep_image("playing");
     }
 
     /// Returns the outer rim of a ring with its centre here, seen from a side.

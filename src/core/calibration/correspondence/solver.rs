@@ -76,7 +76,7 @@ pub(super) fn consensus(rows: &[PushRow]) -> Consensus {
     let mut c_from_s2 = first_guess(rows, &mut lengths);
     let mut inlier = Vec::new();
     let mut median_n = 0.0;
-    // The set of agreeing rows usually repeats after two or three rounds; ten end a set that alternates.
+    // The set of agreeing rows usually repeats after two or three rounds; the limit is for two sets that alternate.
     for _ in 0..10 {
         median_n = median_residual_n(rows, 1, &c_from_s2, &mut lengths);
         let cut_n = CUT * (median_n / MEDIAN_OF_LENGTH).max(FINEST_N);

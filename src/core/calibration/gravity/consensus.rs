@@ -34,7 +34,7 @@ pub(super) fn agreeing(rows: &[GravityRow], floor_n: f64) -> Vec<usize> {
     let min = (AGREEING_FRACTION * rows.len() as f64).ceil() as usize;
     // Without any solvable set all poses are used, and the verdict judges them.
     let Some(mut chosen) = start(rows, min) else { return all };
-    // The chosen poses usually repeat after a few rounds; the limit ends a set that alternates.
+    // The chosen poses usually repeat after a few rounds; the limit is for two sets that alternate.
     for _ in 0..20 {
         let Some(residuals) = residuals(rows, &chosen) else { return all };
         let (order, sorted) = ranked(&residuals);

@@ -44,8 +44,8 @@ const STEPS_S: [[f64; 2]; 4] = [[0.008, 0.005], [0.008, 0.008], [0.010, 0.011], 
 const LONG_S: f64 = 0.014;
 /// Windows for judging the travel, s; the shortest usable one decides.
 const TRAVELS_S: [f64; 3] = [LONG_S, 2.0 * LONG_S, 4.0 * LONG_S];
-/// Largest scatter of a usable fit, as a fraction of the applied force. With 0.4, hands on a device with its own clock
-/// were mistaken for released handles (`nima study hands`).
+/// Largest scatter of a usable fit, as a fraction of the applied force. With 0.4, hands that held a device with its own
+/// clock were mistaken for released handles (`nima study hands`).
 const SCATTER: f64 = 0.3;
 /// Travel caused by the force alone, m: the first value is suspicious if the acceleration is rare, the second is
 /// evidence at any acceleration. In the study, no hand moved more than 13 mm in this way.

@@ -182,7 +182,7 @@ impl PlausibilityChannel {
             return;
         }
         let [newest, (rested_s, is_coarse)] = self.seen;
-        // The loss of one period of learning.
+        // Fraction that remains after one period of learning.
         let kept = (1.0 - LEARNT_S / FORGOTTEN_S).max(0.0);
         self.longest_s = rested_s.max(self.longest_s * kept);
         self.coarse_s = if is_coarse { t_s } else { self.coarse_s };

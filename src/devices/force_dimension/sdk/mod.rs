@@ -142,7 +142,7 @@ impl Sdk {
     pub(super) fn open(&'static self, serial: Option<u16>) -> Result<OpenDevice, SdkError> {
         shutdown::call_before_exit();
         let _one_at_a_time = self.opening.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         let id = unsafe {
             match serial {
                 Some(serial) => (self.functions.open_serial)(c_int::from(serial)),
@@ -169,7 +169,7 @@ pub(super) struct OpenDevice {
 impl Drop for OpenDevice {
     fn drop(&mut self) {
         self.stop().ok();
-        // SAFETY: no pointers; the device id is not used afterwards.
+        // SAFETY: the call takes no pointers; the device id is not used afterwards.
         unsafe { (self.sdk.functions.close)(self.id) };
         shutdown::closed();
     }
@@ -189,7 +189,7 @@ impl OpenDevice {
 
     /// Returns the number of the device type (`DHD_DEVICE_*`).
     pub(super) fn kind(&self) -> Result<i32, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         let kind = unsafe { (self.sdk.functions.kind)(self.id) };
         if kind < 0 { Err(self.sdk.last_error()) } else { Ok(kind) }
     }
@@ -217,37 +217,37 @@ impl OpenDevice {
     }
 
     pub(super) fn enable_force(&self, on: bool) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.enable_force)(c_uchar::from(on), self.id) })
     }
 
     /// Switches force off and brakes on.
     pub(super) fn stop(&self) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.stop)(self.id) })
     }
 
     /// Switches the brakes on, or off: no current in the motors.
     pub(super) fn set_brakes(&self, on: bool) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.brakes)(c_int::from(on), self.id) })
     }
 
     /// Switches gravity compensation on or off.
     pub(super) fn set_gravity_compensation(&self, on: bool) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.gravity)(c_int::from(on), self.id) })
     }
 
     /// Sets the time without a force command after which the device switches its force off, in steps of 125 us.
     pub(super) fn set_watchdog(&self, steps: u8) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.watchdog)(steps, self.id) })
     }
 
     /// Sets the maximum force that the library passes on, N.
     pub(super) fn set_force_max(&self, force_n: f64) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.force_max)(force_n, self.id) })
     }
 
@@ -287,20 +287,20 @@ impl OpenDevice {
 
     /// Returns the pressed buttons, one per bit, the first button in the lowest bit.
     pub(super) fn buttons(&self) -> u32 {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         unsafe { (self.sdk.functions.buttons)(self.id) }
     }
 
     /// Sets whether the closed gripper counts as a button.
     pub(super) fn emulate_button(&self, on: bool) -> Result<Success, SdkError> {
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.emulate_button)(c_uchar::from(on), self.id) })
     }
 
     /// Sets force and gripper force, N; no torque, because the wrist is passive.
     pub(super) fn set_force(&self, force_n: [f64; 3], gripper_n: f64) -> Result<Success, SdkError> {
         let [x, y, z] = force_n;
-        // SAFETY: no pointers.
+        // SAFETY: the call takes no pointers.
         self.checked(unsafe { (self.sdk.functions.force)(x, y, z, 0.0, 0.0, 0.0, gripper_n, self.id) })
     }
 }

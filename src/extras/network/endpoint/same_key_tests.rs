@@ -14,7 +14,7 @@ fn a_second_console_with_the_same_key_does_not_take_a_follower_in_use() {
         time.until(&mut ends, waits).expect("it is admitted, and waits");
         let before = ends[1].got.len();
         time.run(&mut ends, 1.0);
-        assert!(ends[1].got.len() > before + 500, "the first one goes on");
+        assert!(ends[1].got.len() > before + 500, "the first one continues");
         assert_eq!((ends[1].endpoint.control(), ends[1].endpoint.state()), (ControlRole::Holds, LinkState::Open));
         assert!(waits(&ends) && ends[2].got.is_empty());
         // It may ask for control, like any other console.

@@ -23,7 +23,7 @@ pub struct Attempts {
 }
 
 impl Attempts {
-    /// Reads the wrong codes in this folder, beside the keys.
+    /// Reads the wrong codes in this folder, which also contains the keys.
     ///
     /// # Errors
     /// [`KeyError`] with the file. A file that cannot be read does not count as empty.

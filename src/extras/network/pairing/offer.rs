@@ -39,7 +39,7 @@ struct Exchange {
 /// A datagram, and the key of a console that has proved that it has the code.
 type OfferAnswer = ([u8; LEN], Option<PublicKey>);
 
-/// What a follower answers, without its socket and clock.
+/// A follower that offers pairing: computes the answers, without socket and clock.
 pub(super) struct Offer<'a> {
     keys: &'a NetworkKeys,
     pub(super) code: Code,

@@ -191,7 +191,7 @@ fn each_exchange_tests_one_guess_and_proves_both_keys() {
     assert_eq!((answer, there.offer.guesses), (again, 1), "a repeated request is the same guess");
     assert!(matches!(here.take(ANSWER, &answer), Step::Continues));
     let (step, proved) = here.question();
-    // Somebody between the machines puts another key into the proof.
+    // An attacker between the machines puts another key into the proof.
     let mut changed = proved;
     changed[0] ^= 1;
     assert!(there.sends(1, step, &changed, from).is_none());

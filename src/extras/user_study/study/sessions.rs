@@ -35,7 +35,7 @@ impl UserStudy {
             let length = fs::metadata(plain).map_err(StudyError::io(plain))?.len();
             let size = self.sealed_size(length);
             self.pass(plain, &sealed, |from, to| {
-                // Forces compress in another way than no forces, so the length would show the condition.
+                // Forces compress worse than zeros, so the length would reveal the condition.
                 let padding = io::repeat(0).take(size.saturating_sub(length));
                 let head = length.to_le_bytes();
                 let padded = head.as_slice().chain(from).chain(padding);

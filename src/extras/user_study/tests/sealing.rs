@@ -13,7 +13,7 @@ fn everything(folder: &Path) -> Vec<u8> {
         if path.extension().is_some_and(|end| end == "sealed")
             && path.parent().is_some_and(|at| at.ends_with("sessions"))
         {
-            // A megabyte of random bytes contains "yak" by chance; the longer words are enough here.
+            // A megabyte of random bytes contains "yak" by chance; the longer names are enough here.
             content.retain(|byte| !byte.eq_ignore_ascii_case(&b'y'));
         }
         all.extend(content);

@@ -98,7 +98,7 @@ impl SideWorld {
     ) -> Self {
         let pose = arm.pose(start_rad);
         let imu_deg = scene.wrist.as_ref().and_then(|wrist| wrist.imu).map(|imu| imu.s1_from_imu_deg);
-        // Each side has its own arm, and its own person guiding it, so the scene's are removed.
+        // Each side has its own arm and its own person who guides it, so remove those of the scene.
         let world = World::new(&Scene { follower: None, person: None, ..scene.clone() }, STEP_S.recip());
         let start_m = world.hand().position_m();
         let mut side = Self {

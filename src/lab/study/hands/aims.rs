@@ -29,7 +29,7 @@ pub(super) const OPENING_MM: [f64; 2] = [4.5, 6.0];
 pub struct Aims {
     /// Number of aims.
     pub judged: usize,
-    /// A line for each miss.
+    /// One line for each missed aim.
     pub missed: Vec<String>,
 }
 

@@ -136,7 +136,7 @@ impl HandOptions {
         HeldHands { clock: clock.profile, kind: kind.name, tally }
     }
 
-    /// Releases of every force within each of these times, ms.
+    /// Releases every force, with a hand that opens within each of these times, ms.
     fn let_go(
         &self,
         clock: VirtualClock,

@@ -102,7 +102,7 @@ fn of_one_clock(options: &NetworkOptions) -> Vec<(NetworkCondition, Mode)> {
     }
 }
 
-/// Returns the evaluated link at this delay, ms.
+/// Returns the condition on which the study judges the modes, with this delay, ms.
 pub(super) const fn judged_line(delay_ms: f64) -> NetworkCondition {
     NetworkCondition { jitter: JUDGED_JITTER, loss_percent: JUDGED_LOSS_PERCENT, ..NetworkCondition::clean(delay_ms) }
 }

@@ -143,7 +143,7 @@ fn after_a_power_failure_what_was_waited_for_is_read() {
     let mut scanned = 0;
     let mut missing = 0;
     for _ in 0..600 {
-        // One second has two chunks: eight writes, sometimes a few more.
+        // Up to a second is not yet synced: two chunks, in eight writes or a few more.
         let synced = random.usize(begin..log.len() - 20);
         let end = synced + random.usize(1..20);
         let mut disk = Disk(Vec::new());

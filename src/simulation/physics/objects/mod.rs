@@ -268,7 +268,7 @@ fn substeps(setting: &ObjectSettings, period_s: f64) -> u32 {
     let longest_s = if setting.rings.is_empty() {
         SUBSTEP_MAX_S
     } else {
-        // Twelve stiffnesses on the mass of the ring, because of [`SUBSTEP_OF_VIBRATION`].
+        // Twelve contact stiffnesses act on the mass of the ring; see [`SUBSTEP_OF_VIBRATION`].
         let fastest_rad_s = (12.0 * setting.contact.ring_stiffness_n_m / setting.ring.mass_kg).sqrt();
         (SUBSTEP_OF_VIBRATION / fastest_rad_s).min(SUBSTEP_MAX_S)
     };

@@ -24,7 +24,7 @@ pub struct PanelLayout {
     pub places: Option<LayoutNode>,
     /// Closed panels; they keep their places.
     pub closed: Vec<PanelId>,
-    /// Panels in windows of their own; they keep their places.
+    /// Panels in separate windows; they keep their places.
     pub windows: Vec<PanelId>,
     /// Selected tabs, the latest first.
     pub front: Vec<PanelId>,
@@ -80,12 +80,12 @@ impl PanelLayout {
         self.windows.contains(&panel) && self.is_open(panel)
     }
 
-    /// Returns the open panels in windows of their own.
+    /// Returns the open panels in separate windows.
     pub fn windows(&self) -> impl Iterator<Item = PanelId> {
         PanelId::built().filter(|panel| self.is_window(*panel))
     }
 
-    /// Opens the panel in a window of its own, or returns it to its place in front.
+    /// Opens the panel in its own window, or returns it to its place in front.
     pub fn toggle_window(&mut self, panel: PanelId) {
         let is_window = self.is_window(panel);
         self.show(panel);

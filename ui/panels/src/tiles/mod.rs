@@ -42,12 +42,12 @@ pub struct PanelTiles {
     turned: bool,
     /// Panels that were in front when the layout was last saved.
     seen: Vec<PanelId>,
-    /// Whether the window draws the panels that have windows of their own.
+    /// Whether the main window draws the panels that have their own windows.
     opens_windows: bool,
 }
 
 impl PanelTiles {
-    /// Creates the tiles of a window that draws the panels in windows of their own.
+    /// Creates the tiles of a window that draws the panels with their own windows.
     pub fn with_windows() -> Self {
         Self { opens_windows: true, ..Self::default() }
     }
@@ -102,7 +102,7 @@ struct DeskContents<'a> {
     draw: &'a mut dyn FnMut(&mut Ui, PanelId),
     opens_windows: bool,
     closed: Option<PanelId>,
-    /// The panel to open in a window of its own.
+    /// The panel to open in its own window.
     opened: Option<PanelId>,
     /// Place of the close button, which is drawn after the panel's title so that the keyboard reaches it.
     button: Option<(Rect, PanelId)>,

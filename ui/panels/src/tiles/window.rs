@@ -1,4 +1,4 @@
-//! A panel in a window of its own, for a second monitor.
+//! A panel in its own window, for a second monitor.
 
 use egui::{Context, Ui, Vec2, ViewportBuilder, ViewportId, vec2};
 use nima_words::text;

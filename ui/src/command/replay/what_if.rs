@@ -18,7 +18,7 @@ use super::{JournalOpening, output};
 const FORCES: &str = "forces.csv";
 const HEADER: &str = "t_s,side,recorded_state,changed_state,recorded_x_n,recorded_y_n,recorded_z_n,\
 changed_x_n,changed_y_n,changed_z_n,measured_x_n,measured_y_n,measured_z_n";
-/// Limit of such a comparison.
+/// Limitation of the comparison, printed with every result.
 const LIMIT: &str = "the inputs come from the recording: a different force would have changed the motion of the hand and the tissue \
  force; these are the forces that the hand would have felt with the recorded motion";
 

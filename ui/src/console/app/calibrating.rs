@@ -209,7 +209,7 @@ impl ConsoleApp {
         let mut asked = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.set_max_width(760.0);
+                ui.set_max_width(ui.available_width().min(760.0));
                 asked = self.wizards.ui(which, ui, &binding);
             });
         });

@@ -165,7 +165,7 @@ impl ConsoleApp {
         let CheckPage { run, by, saved, .. } = &mut self.checking;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.set_max_width(760.0);
+                ui.set_max_width(ui.available_width().min(760.0));
                 wanted = ready_ui(ui, run.as_ref(), by, saved.as_deref(), &roster);
             });
         });

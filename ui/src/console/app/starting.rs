@@ -129,6 +129,8 @@ impl ConsoleApp {
     }
 
     pub(super) fn open_start(&mut self) {
+        // A user who opens this page needs no welcome, and the welcome describes the rig that ran before.
+        self.start.welcome.close();
         self.shown = ShownPage::Start;
         self.start.open(&self.running, &self.settings.now.recent);
     }

@@ -28,6 +28,8 @@ const TABLE: &str = "endoscope";
 pub(super) struct EndoscopeCard {
     /// Endoscope in the file of the chosen rig.
     of_rig: Option<EndoscopeConfig>,
+    /// The devices of the chosen rig are emulated, and with them its endoscope.
+    is_emulated: bool,
     typed: String,
     /// Time of the last key press, if the address was not tried yet.
     typed_at: Option<Instant>,
@@ -56,7 +58,13 @@ impl EndoscopeCard {
         let of_rig = rig.and_then(|rig| rig.endoscope.clone());
         let typed = of_rig.as_ref().map(|endoscope| endoscope.url.clone()).unwrap_or_default();
         let typed_at = (!typed.is_empty()).then(Instant::now);
-        *self = Self { of_rig, typed, typed_at, ..Self::default() };
+        let is_emulated = rig.and_then(|rig| rig.devices.as_ref()).is_some_and(|devices| devices.emulated);
+        *self = Self { of_rig, is_emulated, typed, typed_at, ..Self::default() };
+    }
+
+    /// Returns whether the emulator of this endoscope starts with the rig, so that it cannot be tried before.
+    fn starts_with_rig(&self, address: &str) -> bool {
+        self.is_emulated && self.of_rig.as_ref().is_some_and(|endoscope| endoscope.url == address)
     }
 
     /// The page is hidden: no camera stays open.
@@ -88,6 +96,10 @@ impl EndoscopeCard {
             None if address.is_empty() => {
                 self.close();
                 ui.add(Label::new(small(text::start::NO_ENDOSCOPE)).wrap());
+            }
+            None if self.starts_with_rig(&address) => {
+                self.close();
+                ui.add(Label::new(small(text::start::ENDOSCOPE_EMULATED)).wrap());
             }
             None => {
                 self.try_it(ui.ctx(), &address);
@@ -193,6 +205,14 @@ mod tests {
         card.choose(Some(&RigConfig::load(rig).unwrap()));
         typed.clone_into(&mut card.typed);
         card
+    }
+
+    #[test]
+    fn an_emulated_endoscope_is_not_tried_before_its_rig_starts() {
+        let url = "http://127.0.0.1:47160/";
+        assert!(card("emulated", url).starts_with_rig(url));
+        assert!(!card("emulated", url).starts_with_rig("/dev/video0"));
+        assert!(!card("simulated", url).starts_with_rig(url));
     }
 
     #[test]

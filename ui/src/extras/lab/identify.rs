@@ -32,8 +32,8 @@ pub(super) struct IdentifyArguments {
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
     /// Column of a quantity that has another name, with an optional factor: `x=px_mm*0.001`, or three axes at once:
-    /// `xyz=px_mm,py_mm,pz_mm*0.001`, `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` select the leader's own motion, from which
-    /// the force is then computed
+    /// `xyz=px_mm,py_mm,pz_mm*0.001`, `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` select the leader's own motion; the force
+    /// is then computed from it
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,

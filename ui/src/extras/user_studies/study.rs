@@ -163,7 +163,8 @@ pub(super) fn scene_for(study: &UserStudy, rig: &RigConfig, hand: &SimulatedHand
     scene.hand.tremor_m = hand.tremor_m;
     scene.seed = hand.seed;
     scene.hand.intended_n = hand.intended_n;
-    let task = TaskFile::of(scene.task.as_ref().context("the scene of the study has no task")?)?;
+    let task =
+        TaskFile::of(scene.task.as_ref().context("the scene of the study has no task: choose a scene with a task")?)?;
     Ok((scene.mounted_at(rig)?, task))
 }
 

@@ -50,7 +50,7 @@ const CHECK: usize = 0;
 const POSES: usize = 1;
 const RESULT: usize = 2;
 const FREE_MOTION: usize = 3;
-/// A shorter touch is a hand that releases the tool, as long as the result is good, s.
+/// While the result is good, a touch shorter than this counts as the hand releasing the tool, s.
 const TOUCHED_S: f64 = 2.0;
 
 #[derive(Debug)]

@@ -29,7 +29,7 @@ pub fn mode_line(mode: Mode) -> &'static str {
     match mode {
         Mode::Best => word("Predicts the force; recommended", "Sagt die Kraft voraus; empfohlen"),
         Mode::Matched => word("The force of a tissue model", "Die Kraft eines Gewebemodells"),
-        Mode::Dfr => word("The measured force, late by the delay", "Die gemessene Kraft, verzögert"),
+        Mode::Dfr => word("The measured force, delayed", "Die gemessene Kraft, verzögert"),
         Mode::Anchored => word("The last force, corrected for the motion", "Letzte Kraft, um die Bewegung korrigiert"),
         Mode::Nima => word("The paper's polynomials, predictive", "Polynome des Artikels, vorausschauend"),
         Mode::Literal => word("Exactly as in the paper", "Genau wie im Artikel"),

@@ -20,7 +20,7 @@ pub const NEEDS_WRIST_SENSOR: Text =
 pub const NEEDS_GRAVITY: Text =
     Text::of("Gravity is not calibrated: calibrate it first", "Schwerkraft nicht kalibriert: zuerst kalibrieren");
 pub const NEEDS_REST: Text =
-    Text::of("Both sensors must rest without contact first", "Beide Sensoren müssen zuerst kontaktfrei ruhen");
+    Text::of("First leave both sensors at rest, without contact", "Zuerst beide Sensoren ohne Kontakt ruhen lassen");
 pub const NEEDS_PUSHES: Text = Text::of("At least six pushes are needed", "Mindestens sechsmal drücken");
 pub const NEEDS_ROTATION: Text = Text::of(
     "There is no result to save: go back and record more pushes",

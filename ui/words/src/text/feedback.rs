@@ -16,10 +16,10 @@ pub fn gain_hover(rate_per_s: f64) -> String {
     let highest = GAIN_ABOVE_ONE.max;
     text_format!(
         "Ratio of the force in the hand to the force that the mode requests, no unit: {min} to {max}, or up to \
-         {highest} if allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per \
+         {highest} if allowed below. At 0 there is no force; 1 is natural. The gain changes by at most {rate_per_s} per \
          second.",
         "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {highest}, wenn \
-         unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde."
+         unten erlaubt. Bei 0 wirkt keine Kraft; 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde."
     )
 }
 

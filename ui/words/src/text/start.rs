@@ -23,8 +23,8 @@ pub const SCENES_HOVER: Text = Text::of(
     "Das Feld, an dem ein simulierter oder emulierter Aufbau arbeitet",
 );
 pub const NO_SCENE: Text = Text::of(
-    "This rig has a real arm, which works on its real field: no scene is needed",
-    "Dieser Aufbau hat einen echten Arm, der an seinem echten Feld arbeitet: keine Szene nötig",
+    "This rig has a real arm and a real operating field: it needs no scene",
+    "Dieser Aufbau hat einen echten Arm und ein echtes Operationsfeld: er braucht keine Szene",
 );
 pub const MISSING: Text = Text::of("Devices of this rig", "Geräte dieses Aufbaus");
 pub const MISSING_HOVER: Text = Text::of(
@@ -146,7 +146,8 @@ pub const ENDOSCOPE_USE_HOVER: Text = Text::of(
     "Ein eingebauter Aufbau bleibt unverändert: eine eigene Kopie erhält die Adresse. Aufbau starten, um das \
      Bild in der Ansicht Chirurg zu sehen.",
 );
-pub const ENDOSCOPE_TYPING: Text = Text::of("Tried when you stop typing", "Wird nach der Eingabe probiert");
+pub const ENDOSCOPE_TYPING: Text = Text::of("Opens when you stop typing", "Öffnet nach der Eingabe");
+pub const ENDOSCOPE_EMULATED: Text = Text::of("Starts with this rig", "Startet mit diesem Aufbau");
 pub const ENDOSCOPE_OPENING: Text = Text::of("Opening", "Wird geöffnet");
 pub const ENDOSCOPE_FORMS: Text = Text::of(
     "Enter http://HOST:PORT/PATH, or the path of a .mjpeg file, a JPEG file or a folder of JPEG files",

@@ -8,7 +8,7 @@ pub const ALL_CLOSED: Text = Text::of(
      öffnen",
 );
 pub const DRAG_HOVER: Text = Text::of(
-    "Drag the title to move the panel; right-click it for a window of its own",
+    "Drag the title to move the panel; right-click it for its own window",
     "Am Titel ziehen verschiebt das Panel; Rechtsklick öffnet ein eigenes Fenster",
 );
 pub const OPEN_WINDOW: Text = Text::of("Open in its own window", "In eigenem Fenster öffnen");

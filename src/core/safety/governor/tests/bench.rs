@@ -23,7 +23,7 @@ const PAST: usize = 512;
 /// Source of the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Render {
-    /// The tissue's force, late.
+    /// The delayed force of the tissue.
     Reflection,
     /// A model of the tissue, applied at the follower's position as estimated by the leader.
     Model,

@@ -20,7 +20,7 @@ pub(super) struct BotaFrames {
     status: u16,
     next_s: Option<f64>,
     frozen: Option<BotaFrame>,
-    /// The numbers since the beginning of a sensor fault.
+    /// The first [`BLOCK`] frames after a sensor fault began; some faults repeat them.
     since: Vec<BotaFrame>,
     in_block: usize,
     made: u64,

@@ -76,7 +76,7 @@ impl Default for EmulatedDynamixel {
 }
 
 impl EmulatedDynamixel {
-    /// Starts the servos on a bus; without a body the shafts sway slowly.
+    /// Starts the servos on a bus; if no simulated body moves them, the shafts sway slowly.
     ///
     /// # Errors
     /// If the model or the baud rate does not exist.

@@ -2,7 +2,7 @@
 //! an argument.
 //!
 //! According to the SDK: force on selects FORCE; stop, excessive speed and an expired watchdog select BRAKE with a
-//! cause; brakes off selects IDLE. Force is applied only in FORCE.
+//! cause; brakes off selects IDLE. A force is applied only in the state FORCE.
 
 use drd::wire::ClientOrder;
 use nalgebra::Vector3;

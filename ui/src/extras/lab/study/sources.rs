@@ -48,7 +48,7 @@ impl SourceArguments {
             bail!("--map requires a recording: add --recording");
         }
         if self.arm.is_some() && self.recording.is_empty() {
-            bail!("--arm requires a session: add --recording");
+            bail!("--arm requires a session: add --recording SESSION");
         }
         let mapping = ColumnMapping::parse(&self.map)?;
         let forces = ["fx_n", "fy_n", "fz_n"];

@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &NewStudyArguments) -> anyhow::Result<()> {
         format!("the orders are not balanced: use a multiple of {rows}")
     };
     output::line(&format!(
-        "created {}: {participants} participants, {} conditions ({balance}), {} trials of each\ncommitment \
+        "created {}: {participants} participants, {} conditions ({balance}), {} trials for each participant\ncommitment \
          (BLAKE2b-256): {}\nkeep it outside the folder: it proves later that the assignment was not changed",
         out.display(),
         plan.labels.len(),

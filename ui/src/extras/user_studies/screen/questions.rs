@@ -109,7 +109,7 @@ impl QuestionnairePage {
         ui.add_space(6.0);
         let height = ui.available_height() - 66.0;
         ScrollArea::vertical().id_salt("questions").auto_shrink(false).max_height(height).show(ui, |ui| {
-            ui.set_max_width(980.0);
+            ui.set_max_width(ui.available_width().min(980.0));
             match self.which {
                 Questionnaire::NasaTlx => self.ratings_ui(ui),
                 Questionnaire::NasaTlxWeighted => {

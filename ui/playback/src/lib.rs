@@ -74,8 +74,10 @@ pub struct Playback {
     stretch_s: [Option<f64>; 2],
     /// Another session on the same clock: equal times since the start of each.
     pub beside: Option<Box<Self>>,
-    /// Whether the operator is choosing a session for comparison.
+    /// The operator requests a session for comparison.
     pub wants_beside: bool,
+    /// The list to choose it from is on the screen.
+    pub is_choosing: bool,
     job: Option<SessionJob>,
     report: OperatorLines,
     ctx: Context,
@@ -155,6 +157,7 @@ impl Playback {
             stretch_s: [None; 2],
             beside: None,
             wants_beside: false,
+            is_choosing: false,
             job: None,
             report: OperatorLines::default(),
             ctx: ctx.clone(),

@@ -97,7 +97,7 @@ impl PlaybackFile {
         })
     }
 
-    const fn session(&self) -> Option<&RecordedFile> {
+    pub(super) const fn session(&self) -> Option<&RecordedFile> {
         match &self.contents {
             PlaybackContents::Session(recorded) => Some(recorded),
             PlaybackContents::Signals(_) => None,

@@ -158,7 +158,7 @@ fn run(
         reported_at: Instant::now(),
         limited: false,
         reads: true,
-        check: Some(CompletenessCheck::new(file.recorded.reader())),
+        check: file.session().map(|recorded| CompletenessCheck::new(recorded.reader())),
         took: Duration::ZERO,
     };
     let mut film = SessionIndex::new(&file)?;

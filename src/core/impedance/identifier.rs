@@ -142,9 +142,10 @@ impl Identifier {
         // A missing force is replaced by the last one so that every history keeps one entry per tick; `fresh` marks it.
         self.last_force_n = force.unwrap_or(self.last_force_n);
         self.report.t_s = self.last_t_s;
-        self.report.rejected += u64::from(!good);
 
         let now = self.track.step(position);
+        let good = good && !self.track.is_bridged();
+        self.report.rejected += u64::from(!good);
         let x = self.track.paper_x();
         let usable = good && self.track.settled();
         let learn = !self.rests(good);

@@ -58,8 +58,8 @@ fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
         mix(f64::from(report.paper_degree));
         mix(report.literal_failures as f64);
     }
-    // Computed before the keys were added.
-    assert_eq!(bits, 0x3a84_451f_1665_593e, "{bits:#x}");
+    // Computed before the keys were added; since then, the jump at the end of a press is bridged for one sample.
+    assert_eq!(bits, 0x9941_597e_72f3_46d8, "{bits:#x}");
 }
 
 #[test]

@@ -64,7 +64,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
-    /// kalman, autoregressive (default: the rig's)
+    /// kalman, autoregressive, increments (default: the rig's)
     #[arg(long)]
     pub(crate) mode: Option<Mode>,
     /// One-way delay of the link in ms (default: the rig's)

@@ -191,7 +191,7 @@ impl Learner {
             every,
             tick: 0,
             surroundings: BackgroundBuilder::new(settings),
-            regression: ImpedanceRegression::new(rate_hz, settings.earlier_forces),
+            regression: ImpedanceRegression::new(rate_hz),
             found: std::array::from_fn(|_| DelayLine::new(max_delay / every + 1, UNKNOWN)),
             moments: DelayLine::new(max_delay, Instant::default()),
             mixture: Mixture::new(rate_hz),

@@ -24,8 +24,8 @@ use parts::ByteWriter;
 /// Version of the journal that this program writes.
 ///
 /// Version 6 has the format of version 5, which contains the raw readings of the devices and the true time of each tick.
-/// It was introduced when `best` began to hold forces that motion does not explain, when memories were shortened, and when
-/// wrong positions and gaps were bridged. A journal of version 5 is replayed without these changes
+/// It was introduced when `best` began to hold forces that motion does not explain, and when wrong positions and gaps
+/// were bridged. A journal of version 5 is replayed without these changes
 /// ([`earlier_forces`](nima_core::impedance::ImpedanceSettings::earlier_forces)), because they would give other forces
 /// than the hand felt.
 pub const VERSION: u16 = 6;

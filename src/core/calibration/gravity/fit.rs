@@ -249,7 +249,7 @@ fn judge(
         {
             Some(reason) => (Verdict::PoorData, drift.map_or(reason, still_drifting)),
             None => match drift {
-                Some(drift) if drift.late_n() > limits.outlier_floor_n => (Verdict::PoorData, still_drifting(drift)),
+                Some(drift) if drift.late_n() > limits.max_n => (Verdict::PoorData, still_drifting(drift)),
                 _ => (Verdict::Accepted, accepted(report, fit)),
             },
         },
@@ -258,7 +258,7 @@ fn judge(
 
 fn still_drifting(drift: &BiasDrift) -> String {
     format!(
-        "the bias drifted by {:.2} N from the first pose to the last, {:.2} N of it in the last quarter; let the sensor warm up and record the poses again",
+        "the bias drifted by {:.2} N from the first pose to the last, {:.2} N of it in the second half; let the sensor warm up and record the poses again",
         drift.total_n(),
         drift.late_n()
     )

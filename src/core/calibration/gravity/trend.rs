@@ -17,8 +17,8 @@ const LEFT_FRACTION: f64 = 0.5;
 /// which four terms follow.
 const POSES_PER_TERM: usize = 8;
 const MAX_TERMS: usize = 4;
-/// The last quarter of the poses shows whether the bias still drifts.
-const LATE_PLACE: f64 = 0.5;
+/// The second half of the poses shows whether the bias still drifts.
+const LATE_PLACE: f64 = 0.0;
 
 /// The bias over the order of the poses, as Legendre polynomials of the place from -1 (first pose) to 1 (last).
 #[derive(Clone, Debug)]
@@ -83,7 +83,7 @@ impl BiasDrift {
         self.since(-1.0).force_n.norm()
     }
 
-    /// Returns the change of the bias over the last quarter of the poses, N.
+    /// Returns the change of the bias over the second half of the poses, N.
     pub(super) fn late_n(&self) -> f64 {
         self.since(LATE_PLACE).force_n.norm()
     }

@@ -64,6 +64,8 @@ class Figures(TypedDict):
     rejected: int
     holes: int
     longest_hole_s: float
+    force_renewal_hz: float | None
+    position_scale: float
     tick_us: dict[str, float]
 
 

@@ -12,6 +12,7 @@ use std::{
 };
 
 use nima_machine::{config::EndoscopeConfig, rig::DeviceName};
+use nima_recording::csv::Signals;
 use nima_screen::live::LiveState;
 use nima_session::completeness::CompletenessCheck;
 use nima_words::language;
@@ -19,7 +20,8 @@ use nima_words::language;
 use super::{
     feed::TickFrame,
     overview::{Overview, OverviewTables},
-    session_index::{Chase, PlaybackFile, PlaybackPosition, SessionIndex},
+    playback_file::PlaybackFile,
+    session_index::{Chase, PlaybackPosition, SessionIndex},
 };
 
 /// Interval of progress reports.
@@ -84,8 +86,8 @@ pub(super) struct PastWorker {
 }
 
 impl PastWorker {
-    /// Opens a session; `wake` is called whenever there is an answer.
-    pub(super) fn start(path: &Path, wake: impl Fn() + Send + 'static) -> Self {
+    /// Opens a session, or the signals of another recording; `wake` is called whenever there is an answer.
+    pub(super) fn start(path: &Path, signals: Option<Arc<Signals>>, wake: impl Fn() + Send + 'static) -> Self {
         let (wishes, wanted) = channel();
         let (channel_end, answers) = channel();
         let path = path.to_path_buf();
@@ -93,7 +95,7 @@ impl PastWorker {
         let of_thread = Arc::clone(&gently);
         let work = move || {
             let sender = AnswerSender { answers: channel_end, wake: Box::new(wake), gently: of_thread };
-            if let Err(why) = run(&path, &wanted, &sender) {
+            if let Err(why) = run(&path, signals, &wanted, &sender) {
                 sender.notify(WorkerAnswer::Refused(why));
             }
         };
@@ -136,14 +138,19 @@ impl AnswerSender {
     }
 }
 
-fn run(path: &Path, wanted: &Receiver<WorkerRequest>, sender: &AnswerSender) -> Result<(), String> {
-    let file = PlaybackFile::open(path)?;
+fn run(
+    path: &Path,
+    signals: Option<Arc<Signals>>,
+    wanted: &Receiver<WorkerRequest>,
+    sender: &AnswerSender,
+) -> Result<(), String> {
+    let file = PlaybackFile::open(path, signals)?;
     let opened = SessionOverview {
         begin_ns: file.begin_ns,
         end_s: file.end_s,
         calibrations: file.calibrations(),
-        devices: file.rig.device_names(),
-        endoscope: file.has_images.then(|| file.rig.endoscope.clone().unwrap_or_default()),
+        devices: file.devices(),
+        endoscope: file.endoscope(),
     };
     sender.notify(WorkerAnswer::Opened(Box::new(opened)));
     let mut reading = FirstReading {
@@ -151,11 +158,15 @@ fn run(path: &Path, wanted: &Receiver<WorkerRequest>, sender: &AnswerSender) -> 
         reported_at: Instant::now(),
         limited: false,
         reads: true,
-        check: Some(CompletenessCheck::new(file.recorded.reader())),
+        check: file.session().map(|recorded| CompletenessCheck::new(recorded.reader())),
         took: Duration::ZERO,
     };
     let mut film = SessionIndex::new(&file)?;
     let mut shown = DisplayedMoment::default();
+    // Signals are in memory: the first moment shown already has all its traces.
+    while reading.goes_on && file.signals().is_some() {
+        reading.go_on(&mut film, sender);
+    }
     loop {
         let patience = match (&shown.chase, reading.goes_on()) {
             (Some(_), _) => Some(Duration::ZERO),

@@ -9,8 +9,8 @@ fn a_link_that_a_flood_displaces_is_not_called_silent() {
     let address = far.endpoint.address().unwrap();
     let others = UdpSocket::bind(HOME).unwrap();
     let begin_s = time.now_s();
-    // Steps of 10 ms on the clocks of both ends. The follower's socket is soon full whenever its console sends; what was in
-    // it before is read within 0.3 s.
+    // Steps of 10 ms on the clocks of both ends. The follower's socket is soon full whenever its console sends; its
+    // earlier datagrams are read within 0.3 s.
     for step in 1..50 {
         for _ in 0..400 {
             // Smaller than any datagram of the console, which therefore finds no room either.

@@ -158,7 +158,7 @@ pub struct IdentifiedDegrees {
     pub nima: u8,
 }
 
-/// What went wrong since the start; each count only grows.
+/// Failures since the start; each count only grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IdentificationFailures {
     /// Rejected samples: not finite, absurd, or time not advancing.

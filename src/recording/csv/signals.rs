@@ -14,7 +14,7 @@ use super::{
 /// Longest time between two values that can be one signal, s: a recording at 1 Hz.
 const MAX_GAP_S: f64 = 2.5;
 
-/// Force and position over time, as far as they were recorded.
+/// Recorded force and position over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Signals {
     /// Times count from the first row, s. NaN where a value is unknown.

@@ -40,7 +40,7 @@ pub struct SessionList {
     picking: Option<Picking>,
 }
 
-/// What the user chose on the page.
+/// Choice of the user on the page.
 #[derive(Debug)]
 pub enum SessionListChoice {
     Open(PathBuf),

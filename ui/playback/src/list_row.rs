@@ -228,7 +228,7 @@ fn about_ui(ui: &mut Ui, row: &SessionListRow) {
 /// Draws the note, which is saved when the field is left.
 fn note_ui(ui: &mut Ui, row: &mut SessionListRow, width: f32) -> Option<SessionRequest> {
     let name = text::playback::note_of(&row.name());
-    // A cell of a grid has no width of its own.
+    // The cell of a grid has no width by itself.
     let field = ui.add_sized([width, BUTTON.y], TextEdit::singleline(&mut row.note).char_limit(200));
     field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &name));
     let is_done = field.lost_focus();

@@ -1,4 +1,4 @@
-//! What playback reads: a session, or the signals of another program's recording.
+//! The file in playback: a session, or the signals of another program's recording.
 
 use std::{
     ops::Range,

@@ -164,7 +164,7 @@ fn run(
     let mut film = SessionIndex::new(&file)?;
     let mut shown = DisplayedMoment::default();
     // Signals are in memory: the first moment shown already has all its traces.
-    while reading.goes_on && file.signals().is_some() {
+    while reading.goes_on() && file.signals().is_some() {
         reading.go_on(&mut film, sender);
     }
     loop {

@@ -55,7 +55,7 @@ struct Cli {
 enum CliCommand {
     /// Open the console (also the default without a command)
     Console(console::ConsoleArguments),
-    /// Look at a recording of this or another program in playback; what it does not contain is unknown
+    /// Show a recording of this or another program in playback; missing signals are unknown
     View(console::ViewArguments),
     /// Run the control loop without a window, then print its timing and errors
     Run(run::RunArguments),

@@ -91,7 +91,7 @@ pub struct Room<'a> {
     pub is_starting: bool,
 }
 
-/// What the user has left.
+/// The page that the user has left.
 #[derive(Debug)]
 pub enum LeftPage {
     Page,

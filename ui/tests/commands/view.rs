@@ -1,4 +1,4 @@
-//! `nima view`: what it refuses, before a window opens; without a display, only the window is missing.
+//! `nima view`: the files that it refuses before a window opens; without a display, only the window is missing.
 
 use crate::{every_command::nima, one_line};
 

@@ -241,7 +241,7 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
             }
         }
     });
-    // A line of its own that is always there, so that no button moves when the reason comes.
+    // A separate line that is always drawn, so that no button moves when a reason appears.
     ui.label(small(why.unwrap_or_default()));
     wish
 }

@@ -1,4 +1,4 @@
-//! Recordings of other programs: what they lack is unknown on the screen.
+//! Recordings of other programs: missing signals are unknown on the screen.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Rings, jaws, pins and the loop on the wire are shown as they were.
+//! Rings, jaws, pins and the loop on the wire are shown in their recorded states.
 
 use std::path::Path;
 

@@ -129,8 +129,6 @@ impl ConsoleApp {
     }
 
     pub(super) fn open_start(&mut self) {
-        // A user who opens this page needs no welcome, and the welcome describes the rig that ran before.
-        self.start.welcome.close();
         self.shown = ShownPage::Start;
         self.start.open(&self.running, &self.settings.now.recent);
     }
@@ -147,6 +145,8 @@ impl ConsoleApp {
         match self.start.ui(ui, &now) {
             Some(StartRequest::Start(choice)) if !self.outbox.holds_stop() => {
                 let before = self.running.clone();
+                // The welcome describes the rig that ran before.
+                self.start.welcome.close();
                 self.begin(choice, Some(before), None);
             }
             Some(StartRequest::Start(_)) | None => {}

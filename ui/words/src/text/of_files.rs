@@ -1,4 +1,4 @@
-//! Names and descriptions of the built-in rigs and scenes, and words of the computer's devices: files and libraries contain
+//! Names and descriptions of the built-in rigs and scenes, and names of the computer's ports: files and libraries contain
 //! them in English.
 
 use crate::language::Text;
@@ -76,7 +76,7 @@ const KNOWN: &[Text] = &[
     Text::of("Force Dimension haptic device", "Haptisches Gerät von Force Dimension"),
 ];
 
-/// Returns words of a file in the language of the window; those that a user wrote stay as they are.
+/// Returns a text of a file in the language of the window; a text that a user wrote stays unchanged.
 pub fn of_file(words: &str) -> &str {
     KNOWN.iter().find(|text| text.english() == words).map_or(words, |text| text.get())
 }

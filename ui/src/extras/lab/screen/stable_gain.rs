@@ -11,7 +11,8 @@ const HEIGHT: f32 = 8.0;
 /// Number of segments of the strip.
 const PARTS: u32 = 60;
 
-/// Draws the strip and its text, in the same room also before the strip is known: what is below must not move. `rail` is the slider's rectangle, `limit` the gain at its right end.
+/// Draws the strip and its text. They have the same room before the strip is known, so that the widgets below do not
+/// move. `rail` is the slider's rectangle, `limit` the gain at its right end.
 ///
 /// In a separate scope: the content changes with the first contact, and the widgets below must keep their ids, or a slider
 /// drag would end at that moment.

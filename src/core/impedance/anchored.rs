@@ -59,11 +59,11 @@ impl RenderingMethod for AnchoredMethod {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.degree
+        report.degrees.anchored
     }
 
     fn note(models: &Models, report: &mut IdentificationReport) {
-        report.degree = models.anchored.degree;
+        report.degrees.anchored = models.anchored.degree;
         report.gain = models.anchored.gain;
     }
 }
@@ -359,9 +359,9 @@ impl FollowerEnd for Learner {
     fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         parcel.models.anchored = self.step(&seen.posture.stance, seen.force_n, seen.good, seen.learn);
         if seen.learn {
-            report.degree = parcel.models.anchored.degree;
+            report.degrees.anchored = parcel.models.anchored.degree;
             report.gain = parcel.models.anchored.gain;
-            report.restarts = self.restarts;
+            report.failures.restarts = self.restarts;
         }
     }
 

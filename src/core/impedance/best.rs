@@ -45,7 +45,7 @@ impl RenderingMethod for Best {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.matched_degree
+        report.degrees.matched
     }
 }
 

@@ -77,7 +77,10 @@ pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{MatchedModel, ModelForm};
-pub use messages::{IdentificationReport, ImpedanceExcitation, LinkPacket, Posture, RenderedForces, Sample};
+pub use messages::{
+    IdentificationFailures, IdentificationReport, IdentifiedDegrees, ImpedanceExcitation, LinkPacket, Posture,
+    RenderedForces, Sample,
+};
 pub use method::{Entry, FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod};
 pub use mode::{MODES, Mode, Models, ParseModeError, SLOTS, add_baselines};
 pub use packed::{PACKED_MAX, ParameterPack};

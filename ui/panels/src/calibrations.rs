@@ -22,6 +22,9 @@ use nima_words::{
 
 use crate::panel::{Panel, PanelContext, PanelSize};
 
+/// Height of the source of the force.
+const SOURCE_HEIGHT: f32 = 38.0;
+
 /// A request of the technician.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationWish {
@@ -67,7 +70,7 @@ pub fn calibrations_ui(
     let closed = text::calibrations::closed(live.state_for(active.side()));
     let mut wish = rig_ui(ui, live, closed, open);
     ui.add_space(2.0);
-    source_ui(ui, live);
+    source_ui(ui, live, active.side());
     for report in active.report() {
         ui.label(report);
     }
@@ -193,14 +196,19 @@ fn side_ui(ui: &mut Ui, now: Side) -> Option<CalibrationWish> {
     wish
 }
 
-fn source_ui(ui: &mut Ui, live: &LiveState) {
-    let source = live.first_tick().map_or(ForceSource::NoSample, |tick| tick.force.source);
+fn source_ui(ui: &mut Ui, live: &LiveState, side: Side) {
+    let tick = live.tick_of(side).or_else(|| live.first_tick());
+    let source = tick.map_or(ForceSource::NoSample, |tick| tick.force.source);
     let sure = matches!(source, ForceSource::AtTip | ForceSource::Network);
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
-    ui.horizontal(|ui| {
-        sign_ui(ui, what, 5.0, colour);
-        let words = RichText::new(text::calibrations::source(source.words())).font(theme::strong(14.0));
-        ui.add(Label::new(words).wrap()).on_hover_text(sentence(source.words()));
+    // The room of two lines: a reason may need them, and must not move the buttons when it comes.
+    ui.scope(|ui| {
+        ui.set_min_height(SOURCE_HEIGHT);
+        ui.horizontal(|ui| {
+            sign_ui(ui, what, 5.0, colour);
+            let words = RichText::new(text::calibrations::source(source.words())).font(theme::strong(14.0));
+            ui.add(Label::new(words).wrap()).on_hover_text(sentence(source.words()));
+        });
     });
     if let Some(unsure) = source.doubt() {
         ui.label(small(sentence(unsure.words())));

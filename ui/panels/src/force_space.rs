@@ -4,8 +4,8 @@
 use std::f32::consts::TAU;
 
 use egui::{
-    Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, TextWrapMode, Ui, UiBuilder, Vec2,
-    pos2, vec2,
+    Align2, Button, Color32, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, TextStyle, TextWrapMode, Ui,
+    UiBuilder, Vec2, pos2, vec2,
 };
 use nalgebra::Vector3;
 use nima_machine::rig::Side;
@@ -13,7 +13,7 @@ use nima_screen::{
     force_cloud::{Ellipsoid, ForcePair, GAP_S, SECONDS},
     live::LiveState,
     theme,
-    widgets::fitting,
+    widgets::{fitting, width_of},
 };
 use nima_words::{language::Text, report_text::newtons, text};
 
@@ -187,7 +187,9 @@ fn legend_ui(ui: &mut Ui, state: &mut ForceSpaceState, rect: Rect, magnitudes_n:
             state.hidden[row] ^= true;
         }
     }
-    let size = vec2(64.0, 22.0);
+    let font = TextStyle::Button.resolve(ui.style());
+    let width = width_of(ui.painter(), text::force_space::RESET.get(), font) + 2.0 * ui.spacing().button_padding.x;
+    let size = vec2(width, 22.0);
     let place = Rect::from_min_size(rect.right_top() + vec2(-size.x - 6.0, 6.0), size);
     let reset = ui.put(place, Button::new(text::force_space::RESET).small().min_size(size));
     if reset.on_hover_text(text::force_space::RESET_HOVER).clicked() {

@@ -213,25 +213,27 @@ mod tests {
     #[test]
     fn an_unknown_force_is_no_number_on_the_screen_and_a_known_one_is_again() {
         let (mut live, mut tick) = idle("peg_transfer");
-        let mut show = |live: &mut LiveState, force_n: Option<f64>| {
+        let mut show = |live: &mut LiveState, force_n: Option<f64>, error_n: f64| {
             for _ in 0..200 {
                 tick.t_s += 1e-3;
                 tick.measured_n = nalgebra::Vector3::new(0.0, 0.0, force_n.unwrap_or(f64::NAN));
-                tick.identification.horizon_error_n = [0.25; nima_core::impedance::SLOTS];
+                tick.identification.horizon_error_n = [error_n; nima_core::impedance::SLOTS];
                 live.replay([].iter(), &[Some(tick), None]);
             }
             live.settle(0.2);
             tick.t_s
         };
-        let known_s = show(&mut live, Some(1.5));
+        show(&mut live, Some(1.5), 0.0);
+        assert!(live.figures.horizon_n.iter().all(Option::is_none), "no prediction was judged yet");
+        let known_s = show(&mut live, Some(1.5), 0.25);
         assert_eq!(live.figures.measured_n, [Some(1.5), None], "there is no left arm");
         assert!(live.figures.horizon_n.iter().all(Option::is_some));
-        let unknown_s = show(&mut live, None);
+        let unknown_s = show(&mut live, None, 0.25);
         assert_eq!((live.figures.measured_n, live.figures.horizon_n[0]), ([None; SIDES], None));
         let history = &live.history[Side::Right.index()];
         assert_eq!([known_s, unknown_s].map(|t_s| history.value_at(2, t_s - 0.05)), [Some(1.5), None]);
         assert!(history.value_at(5, unknown_s - 0.05).is_some(), "the force in the hand is known");
-        show(&mut live, Some(0.0));
+        show(&mut live, Some(0.0), 0.25);
         assert!(live.figures.measured_n[0].unwrap() < 1e-9, "zero is a fact again");
     }
 }

@@ -30,6 +30,8 @@ const DIAGRAM_HEIGHT: f32 = 118.0;
 const TITLE_HEIGHT: f32 = 56.0;
 /// Width from which two columns have room.
 const TWO_COLUMNS: f32 = 600.0;
+/// Distance between the columns of both hands.
+const BETWEEN_HANDS: f32 = 24.0;
 /// Height of a gate's row, and of a line of the answer.
 const LINE: f32 = 20.0;
 /// Distance of a gate's name from the left edge, behind its sign.
@@ -70,6 +72,7 @@ fn safety_ui(ui: &mut Ui, live: &LiveState, state: &mut SafetyState) {
             return;
         }
     } else if is_wide {
+        ui.spacing_mut().item_spacing.x = BETWEEN_HANDS;
         ui.columns(SIDES, |columns| {
             for (ui, side) in columns.iter_mut().zip(Side::LEFT_TO_RIGHT) {
                 ui.label(RichText::new(text::common::hand(side_name(side))).font(theme::strong(15.0)));

@@ -129,10 +129,11 @@ pub(super) fn time_axis_height(ui: &Ui) -> f32 {
     TIME_AXIS_ROWS * ui.text_style_height(&TextStyle::Body)
 }
 
-/// Draws the torque about the shaft, if known: it is not rendered, so it is not among the forces.
+/// Draws the torque about the shaft: it is not rendered, so it is not among the forces. The line of a rig that can measure it
+/// stays while the torque is unknown, so that the plots do not move.
 fn twist_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let ShaftTwist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
-    if jaws_nm.is_some() || wrist_nm.is_some() {
+    if jaws_nm.is_some() || wrist_nm.is_some() || live.rig.devices.is_some() {
         let words = text::traces::twist([jaws_nm, wrist_nm].map(|nm| nm.map(|nm| 1e3 * nm)));
         ui.add(Label::new(small(&words)).truncate()).on_hover_text(text::traces::TWIST_HOVER);
     }

@@ -19,12 +19,11 @@ use nima_words::{language, text};
 
 use super::{
     job::SessionJob,
-    list_row::{SessionListRow, SessionRequest, SortBy, alarms_in, read, row_ui},
+    list_row::{SessionListRow, SessionRequest, SortBy, alarms_in, note_width, read, row_ui},
 };
 
 #[derive(Debug, Default)]
 pub struct SessionList {
-    pub is_open: bool,
     /// A session is to be chosen for the comparison.
     pub for_beside: bool,
     folder: Option<PathBuf>,
@@ -41,6 +40,13 @@ pub struct SessionList {
     picking: Option<Picking>,
 }
 
+/// Choice of the user on the page.
+#[derive(Debug)]
+pub enum SessionListChoice {
+    Open(PathBuf),
+    Back,
+}
+
 /// Result of the thread that reads the folder.
 #[derive(Debug)]
 enum ReadStep {
@@ -51,9 +57,8 @@ enum ReadStep {
 }
 
 impl SessionList {
-    /// Shows the page; the folder of sessions is in `data_folder`.
+    /// Reads the sessions for the page; the folder of sessions is in `data_folder`.
     pub fn open(&mut self, ctx: &Context, data_folder: Option<&Path>) {
-        self.is_open = true;
         self.for_beside = false;
         self.report = None;
         self.folder = data_folder.map(|folder| folder.join("sessions"));
@@ -114,17 +119,16 @@ impl SessionList {
         }
     }
 
-    /// Draws the page, with the session that is being recorded; returns the session to open.
-    pub fn ui(&mut self, ui: &mut Ui, recorded: Option<&DisplayState>) -> Option<PathBuf> {
+    /// Draws the page, with the session that is being recorded; returns the choice.
+    pub fn ui(&mut self, ui: &mut Ui, recorded: Option<&DisplayState>) -> Option<SessionListChoice> {
         self.take_in();
+        let mut leaves = false;
         let mut wish = Picking::take(&mut self.picking).map(SessionRequest::Open);
         let frame = Frame::new().inner_margin(Margin::symmetric(18, 14));
         CentralPanel::default().frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
                 let back = Button::new(text::playback::BACK).min_size(vec2(150.0, 36.0));
-                if ui.add(back).clicked() {
-                    self.is_open = false;
-                }
+                leaves = ui.add(back).clicked();
                 let elsewhere = Button::new(text::playback::ELSEWHERE).min_size(vec2(150.0, 36.0));
                 if ui
                     .add_enabled(self.picking.is_none(), elsewhere)
@@ -154,7 +158,10 @@ impl SessionList {
             let asked = self.rows_ui(ui);
             wish = wish.take().or(asked);
         });
-        self.obey(ui.ctx(), wish?)
+        if leaves {
+            return Some(SessionListChoice::Back);
+        }
+        self.obey(ui.ctx(), wish?).map(SessionListChoice::Open)
     }
 
     /// Draws search, the folder's button, and the recording that is running.
@@ -190,6 +197,7 @@ impl SessionList {
         if shown.is_empty() {
             ui.label(weak(text::playback::NOT_FOUND));
         }
+        let note_width = note_width(ui.available_width());
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             Grid::new("sessions").spacing(vec2(8.0, 6.0)).striped(true).show(ui, |ui| {
                 for by in SortBy::ALL {
@@ -206,7 +214,7 @@ impl SessionList {
                 ui.end_row();
                 for row in shown {
                     let is_asked = self.asked.as_ref() == Some(&row.shelved.path);
-                    wish = row_ui(ui, row, is_asked, self.job.is_none()).or(wish.take());
+                    wish = row_ui(ui, row, is_asked, self.job.is_none(), note_width).or(wish.take());
                     ui.end_row();
                 }
             });
@@ -216,10 +224,7 @@ impl SessionList {
 
     fn obey(&mut self, ctx: &Context, wish: SessionRequest) -> Option<PathBuf> {
         match wish {
-            SessionRequest::Open(path) => {
-                self.is_open = false;
-                return Some(path);
-            }
+            SessionRequest::Open(path) => return Some(path),
             SessionRequest::Ask(path) => self.asked = Some(path),
             SessionRequest::Note(path, note) => {
                 self.report = set_note(&path, &note).err().map(|error| text::playback::note_not_saved(&error));

@@ -13,12 +13,13 @@ use nima_session::{
 };
 use nima_words::{
     report_text::{chain, mode_name, quoted},
-    text,
+    text::{self, of_files::of_file},
 };
 
 const BUTTON: egui::Vec2 = egui::vec2(74.0, 28.0);
-/// Width of the note.
-const NOTE: f32 = 180.0;
+/// Range of the width of a note, and the width of the other columns with their longest usual values.
+const NOTE: std::ops::RangeInclusive<f32> = 180.0..=600.0;
+const OTHERS: f32 = 1010.0;
 /// The log of a larger file takes too long to read for a list.
 const LOG_READ_MAX: u64 = 500_000_000;
 
@@ -89,7 +90,7 @@ impl SessionListRow {
     }
 
     fn scene(&self) -> &str {
-        self.info().and_then(|info| info.scene.as_deref()).unwrap_or_default()
+        of_file(self.info().and_then(|info| info.scene.as_deref()).unwrap_or_default())
     }
 
     /// Returns the mode by its name on the screen, or by that in the file if this version has no such mode.
@@ -139,9 +140,21 @@ pub(super) fn alarms_in(path: &Path, bytes: u64) -> Option<usize> {
     (bytes <= LOG_READ_MAX).then(|| RecordedFile::open(path).ok()?.alarms().ok()).flatten()
 }
 
-pub(super) fn row_ui(ui: &mut Ui, row: &mut SessionListRow, is_asked: bool, free: bool) -> Option<SessionRequest> {
+/// Returns the width of the notes in a table of this width.
+pub(super) fn note_width(table: f32) -> f32 {
+    (table - OTHERS).clamp(*NOTE.start(), *NOTE.end())
+}
+
+/// Draws the session with its note in this width; `free`: a report may be written.
+pub(super) fn row_ui(
+    ui: &mut Ui,
+    row: &mut SessionListRow,
+    is_asked: bool,
+    free: bool,
+    note_width: f32,
+) -> Option<SessionRequest> {
     about_ui(ui, row);
-    let mut wish = note_ui(ui, row);
+    let mut wish = note_ui(ui, row, note_width);
     let name = row.name();
     let SessionListRow { shelved: StoredSession { path, kept, writing, .. }, about, .. } = row;
     let mut button =
@@ -193,9 +206,13 @@ fn about_ui(ui: &mut Ui, row: &SessionListRow) {
             ui.label(row.scene());
             ui.label(weak(row.mode()));
             let part = about.stretch_from_s.map(|from_s| format!(" {}", text::playback::stretch(from_s)));
-            let length = text::playback::short_clock(about.length_s());
-            let now = if *writing { format!(" {}", text::playback::RECORDING.get()) } else { String::new() };
-            ui.label(format!("{length}{now}{}", part.unwrap_or_default()));
+            // The length of a session that is being recorded grows, but the list does not.
+            let length = if *writing {
+                text::playback::RECORDING.get().to_owned()
+            } else {
+                text::playback::short_clock(about.length_s())
+            };
+            ui.label(format!("{length}{}", part.unwrap_or_default()));
         }
         Err(why) => {
             ui.label(strong(row.name()));
@@ -209,9 +226,10 @@ fn about_ui(ui: &mut Ui, row: &SessionListRow) {
 }
 
 /// Draws the note, which is saved when the field is left.
-fn note_ui(ui: &mut Ui, row: &mut SessionListRow) -> Option<SessionRequest> {
+fn note_ui(ui: &mut Ui, row: &mut SessionListRow, width: f32) -> Option<SessionRequest> {
     let name = text::playback::note_of(&row.name());
-    let field = ui.add(TextEdit::singleline(&mut row.note).char_limit(200).desired_width(NOTE));
+    // The cell of a grid has no width by itself.
+    let field = ui.add_sized([width, BUTTON.y], TextEdit::singleline(&mut row.note).char_limit(200));
     field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &name));
     let is_done = field.lost_focus();
     field.on_hover_text(text::playback::NOTE_HOVER);

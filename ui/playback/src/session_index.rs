@@ -5,13 +5,9 @@
 //! seconds before, so that every panel shows its original content. Parts that cannot be replayed are shown from the recorded
 //! plots.
 
-use std::path::{Path, PathBuf};
-
 use nima_machine::{
-    config::RigConfig,
     messages::{Event, Tick},
     rig::{SIDES, Side},
-    teleop::{Calibrations, Loop, Timing},
 };
 use nima_screen::{
     history::CHANNELS,
@@ -20,29 +16,22 @@ use nima_screen::{
     signals::{TipThen, signals_of},
 };
 use nima_session::{
-    file::{LineKind, LogLine, RecordedFile},
-    images,
-    journal::JournalStart,
-    objects::{self, ObjectStates},
-    plot_channels,
+    file::{LineKind, LogLine},
     replay::Keyframe,
 };
-use nima_simulation::scene::Scene;
-use nima_words::{
-    report_text::{chain, quoted},
-    text,
-};
+use nima_words::report_text::{chain, quoted};
 
 use super::{
     feed::{FeedPosition, TickFeed, TickFrame, plots},
-    overview::{EventNote, OverviewTables},
+    overview::EventNote,
+    playback_file::PlaybackFile,
     shown_s,
 };
 
 /// Length of the replay before a moment, s, so that traces and values have their history.
 const LEAD_S: f64 = 10.0;
 /// Traces reach back to this time before it, s.
-const TRACES_S: f64 = 120.0;
+pub(super) const TRACES_S: f64 = 120.0;
 /// Minimum time between keyframes, s; doubled whenever there are too many.
 const KEYFRAME_S: f64 = 1.5;
 /// Maximum number of stored keyframes: each is a whole loop, 17 MB with one arm and 27 MB with two.
@@ -55,82 +44,6 @@ const COLUMN_S: f64 = 0.016;
 const LOG_S: f64 = 4.0;
 /// A moment without a tick uses the next tick within this time, s.
 const NEXT_S: f64 = 0.05;
-
-pub(super) struct PlaybackFile {
-    pub(super) path: PathBuf,
-    pub(super) recorded: RecordedFile,
-    pub(super) begin_ns: u64,
-    /// Time of its last message, s.
-    pub(super) end_s: f64,
-    /// The arms with recorded plots.
-    pub(super) arms: Vec<Side>,
-    pub(super) rig: RigConfig,
-    pub(super) scene: Scene,
-    /// The start of its journal, or the reason why it cannot be replayed.
-    start: Result<JournalStart, String>,
-    /// Contains rings or jaws.
-    has_objects: bool,
-    /// Contains endoscope images.
-    pub(super) has_images: bool,
-}
-
-impl PlaybackFile {
-    /// Returns one line as error if the session cannot be shown at all.
-    pub(super) fn open(path: &Path) -> Result<Self, String> {
-        let recorded = RecordedFile::open(path).map_err(|error| quoted(&chain(&error)))?;
-        let begin_ns = plot_channels::beginning_ns(recorded.reader()).map_err(|error| quoted(&chain(&error)))?;
-        let end_s = recorded.about().map_err(|error| quoted(&chain(&error)))?.seconds;
-        let start = recorded.journal().map(|journal| journal.start().clone()).map_err(|error| quoted(&chain(&error)));
-        let rig = match &start {
-            Ok(start) => start.origin.rig.clone(),
-            Err(_) => attached(&recorded, "rig.toml")?,
-        };
-        let scene = attached(&recorded, "scene.toml")?;
-        let arms = plot_channels::arms(recorded.reader());
-        let has_objects = objects::are_shown(recorded.reader());
-        let has_images = images::are_recorded(recorded.reader());
-        let path = path.to_owned();
-        Ok(Self { path, recorded, begin_ns, end_s, arms, rig, scene, start, has_objects, has_images })
-    }
-
-    fn t_s(&self, time_ns: u64) -> f64 {
-        time_ns.saturating_sub(self.begin_ns) as f64 / 1e9
-    }
-
-    pub(super) fn time_ns(&self, t_s: f64) -> u64 {
-        self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
-    }
-
-    /// Returns the objects of the scene at this time, s; none if they are not recorded or cannot be read.
-    fn objects(&self, t_s: f64) -> Option<ObjectStates> {
-        let at = || objects::at(self.recorded.reader(), self.begin_ns, self.time_ns(t_s)).ok().flatten();
-        self.has_objects.then(at)?
-    }
-
-    /// Returns the tables of the activated calibrations.
-    pub(super) fn calibrations(&self) -> OverviewTables {
-        let tables = self.recorded.reader().metadata().unwrap_or_default();
-        let of = |name: &str| name.strip_prefix("calibrations ").map(str::to_owned);
-        tables.into_iter().filter_map(|(name, table)| Some((of(&name)?, table))).collect()
-    }
-
-    /// Returns a tick of each arm with unknown values only.
-    fn blank(&self) -> Result<[Option<Tick>; SIDES], String> {
-        let known = Side::ALL.map(|side| self.arms.contains(&side).then(Calibrations::default));
-        let mut control = Loop::new(&self.rig, &known).map_err(|error| quoted(&chain(&error)))?;
-        Ok(control.step([None; SIDES], &Timing::default()).1)
-    }
-}
-
-/// Returns a settings table of a session from its file.
-fn attached<T: serde::de::DeserializeOwned>(recorded: &RecordedFile, name: &str) -> Result<T, String> {
-    let reader = recorded.reader();
-    let place =
-        reader.attachments().iter().find(|one| one.name == name).ok_or_else(|| text::playback::without(name))?;
-    let bytes = reader.attachment(place).map_err(|error| quoted(&chain(&error)))?;
-    nima_files::from_toml(&String::from_utf8_lossy(&bytes))
-        .map_err(|misfit| text::playback::unusable(name, misfit.message()))
-}
 
 /// Extremes of the signals in a short time.
 #[derive(Clone, Copy, Debug)]
@@ -191,13 +104,10 @@ impl<'a> SessionIndex<'a> {
             exact_s: 0.0,
             why: None,
         };
-        let first = file.start.as_ref().map_err(Clone::clone).and_then(|start| {
-            let first = Keyframe::first(start).map_err(|error| quoted(&chain(&error)))?;
-            Ok((start, first))
-        });
-        match first {
-            Ok((start, first)) => {
-                film.reading = Some(TickFeed::Replay(file.recorded.cursor(start, first.clone(), file.begin_ns)));
+        let start = file.start.as_ref().map_err(Clone::clone);
+        match start.and_then(|start| Keyframe::first(start).map_err(|error| quoted(&chain(&error)))) {
+            Ok(first) => {
+                film.reading = file.feed(&first);
                 film.keyframes.push(first);
             }
             Err(why) => film.why = Some(why),
@@ -254,7 +164,7 @@ impl<'a> SessionIndex<'a> {
         let times_ns = self.file.time_ns(self.log_s)..to_ns;
         self.log_s = self.read_s;
         // An unreadable log yields no entries; the replay or the plots report the damage.
-        let lines = self.file.recorded.log(times_ns).unwrap_or_default();
+        let lines = self.file.log(times_ns);
         let devices = self.file.rig.device_names();
         let note = |LogLine { time_ns, kind, words, value }| {
             let words = value.and_then(|value| WORDS.of(&value, &devices)).unwrap_or(words);
@@ -308,6 +218,9 @@ impl<'a> SessionIndex<'a> {
     /// Returns the state of the window before this time, s: traces and events.
     fn live(&self, t_s: f64) -> LiveState {
         let mut live = LiveState::of_past(self.file.rig.clone(), self.file.scene.clone());
+        if let Some(signals) = self.file.signals() {
+            live.history.iter_mut().for_each(|history| history.bridge(signals.gap_s()));
+        }
         live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);
         // Later marks are to the right of the traces.
         live.marks_s.extend(&self.marks_s);
@@ -338,12 +251,8 @@ impl<'a> SessionIndex<'a> {
     pub(super) fn chase(&self, to_s: f64) -> Chase {
         let from_s = (to_s - LEAD_S).max(0.0);
         let keyframe = self.keyframes.iter().rfind(|keyframe| keyframe.t_s() <= from_s);
-        let feed = match (keyframe, &self.file.start) {
-            (Some(keyframe), Ok(start)) if self.is_exact(to_s) => {
-                TickFeed::Replay(self.file.recorded.cursor(start, keyframe.clone(), self.file.begin_ns))
-            }
-            _ => TickFeed::Plots(from_s),
-        };
+        let replay = keyframe.filter(|_| self.is_exact(to_s)).and_then(|keyframe| self.file.feed(keyframe));
+        let feed = replay.unwrap_or(TickFeed::Plots(from_s));
         Chase { feed, live: self.live(from_s), like: self.like(from_s), from_s, to_s }
     }
 }

@@ -1,7 +1,7 @@
 //! Help for new users: a tour of four steps, and a glossary. Both stay below the top bar so that the stop button is
 //! never covered, and the loop continues while they are open.
 
-use egui::{Align, Align2, Button, Context, Label, Rect, RichText, ScrollArea, Ui, Window, vec2};
+use egui::{Align, Align2, Button, Color32, Context, Label, Rect, RichText, ScrollArea, Ui, Window, vec2};
 use nima_screen::theme;
 use nima_words::text::{
     commands::{BY_HAND, key_meaning},
@@ -34,7 +34,7 @@ impl Help {
         self.tour = None;
     }
 
-    /// Draws the open windows into `room`, the tour only over a view (`on_view`); returns true in the frame in which it ends.
+    /// Draws the open windows into `room`, the tour only over the views (`on_view`); returns true in the frame in which it ends.
     pub(super) fn ui(&mut self, ctx: &Context, room: Rect, on_view: bool) -> bool {
         self.glossary_ui(ctx, room);
         let Some(step) = self.tour.filter(|_| on_view) else { return false };
@@ -43,11 +43,21 @@ impl Help {
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 12.0)).fixed_size(vec2(440.0, 0.0));
         window.show(ctx, |ui| {
             ui.label(RichText::new(heading.get()).font(theme::strong(18.0)));
-            ui.label(RichText::new(words.get()).font(theme::regular(15.0)));
-            ui.add_space(6.0);
+            let font = theme::regular(15.0);
+            // The room of the longest text, so that the buttons stay under the pointer.
+            let height = |words: &str| {
+                ui.painter().layout(words.to_owned(), font.clone(), Color32::WHITE, ui.available_width()).size().y
+            };
+            let rest = TOUR.iter().map(|(_, words)| height(words.get())).fold(0.0, f32::max) - height(words.get());
+            ui.label(RichText::new(words.get()).font(font));
+            ui.add_space(rest + 6.0);
             ui.horizontal(|ui| {
-                ui.label(nima_screen::widgets::small(step_of(step + 1, TOUR.len())));
                 let size = vec2(96.0, 32.0);
+                // Digits differ in width.
+                ui.add_sized(
+                    vec2(48.0, size.y),
+                    Label::new(nima_screen::widgets::small(step_of(step + 1, TOUR.len()))),
+                );
                 if ui.add_enabled(step > 0, Button::new(STEP_BACK).min_size(size)).clicked() {
                     self.tour = Some(step - 1);
                 }

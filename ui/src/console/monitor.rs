@@ -173,7 +173,8 @@ impl Monitor {
                 ui.label(word).on_hover_text(text::monitor::WATCHING_HOVER);
                 ui.add_space(10.0);
                 let scene = self.live.as_ref().map(|live| live.scene.name.clone()).unwrap_or_default();
-                let words = text::monitor::rig_and_scene(&self.rig, &scene);
+                let [rig, scene] = [&self.rig, &scene].map(|words| text::of_files::of_file(words));
+                let words = text::monitor::rig_and_scene(rig, scene);
                 ui.label(RichText::new(words).font(theme::strong(19.0)));
                 ui.add_space(10.0);
                 let stale = self.stale();

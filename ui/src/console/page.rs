@@ -19,17 +19,13 @@ pub trait Page: Debug {
     /// Returns the name and purpose on the button that opens it.
     fn name(&self) -> [&'static str; 2];
 
-    fn is_shown(&self) -> bool;
-
-    /// Shows it, with the user's data and the other folders with known content.
-    fn show(&mut self, folder: Option<&Path>, known: &[PathBuf]);
-
-    fn hide(&mut self);
+    /// Reads its content before it is shown: from the user's data, and other folders with known content.
+    fn read(&mut self, folder: Option<&Path>, known: &[PathBuf]);
 
     /// Returns whether it reserves the machine: then the rest of the screen is closed.
     fn holds_machine(&self) -> bool;
 
-    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<ClosedRun>;
+    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<LeftPage>;
 
     /// Continues its work; returns its request to the window.
     fn go_on(&mut self, now: &PageContext<'_>) -> Option<PageRequest>;
@@ -95,9 +91,13 @@ pub struct Room<'a> {
     pub is_starting: bool,
 }
 
-/// Result of releasing the machine: the rig and scene that ran before.
+/// The page that the user has left.
 #[derive(Debug)]
-pub struct ClosedRun(pub Option<RigChoice>);
+pub enum LeftPage {
+    Page,
+    /// The machine is no longer reserved; the rig and scene that ran before.
+    Machine(Option<RigChoice>),
+}
 
 /// State of the window.
 pub struct PageContext<'a> {

@@ -31,12 +31,16 @@ const GIVE_UP: Duration = Duration::from_secs(10);
 const LAST: Duration = Duration::from_millis(700);
 
 /// File name, role, panel to bring to the front, light palette.
-const SHOTS: [(&str, Role, Option<PanelId>, bool); 8] = [
+const SHOTS: &[(&str, Role, Option<PanelId>, bool)] = &[
     ("console", Role::Technician, None, false),
     ("safety", Role::Technician, Some(PanelId::Safety), false),
     ("devices", Role::Technician, Some(PanelId::Devices), false),
     ("tradeoff", Role::Technician, Some(PanelId::Tradeoff), false),
     ("link", Role::Technician, Some(PanelId::Link), false),
+    ("calibration", Role::Technician, Some(PanelId::Calibrations), false),
+    ("prediction-error", Role::Technician, Some(PanelId::Horizon), false),
+    ("degrees", Role::Technician, Some(PanelId::Degrees), false),
+    ("timing", Role::Technician, Some(PanelId::Timing), false),
     ("light", Role::Technician, None, true),
     ("surgeon", Role::Surgeon, None, false),
     ("demo", Role::Demo, None, false),
@@ -117,6 +121,15 @@ mod tests {
     use nima_simulation::scene::Scene;
 
     use super::*;
+
+    #[test]
+    fn every_panel_is_in_a_picture() {
+        // In front in every layout.
+        let mut shown = vec![PanelId::Field, PanelId::Feedback, PanelId::Traces, PanelId::ForceSpace];
+        shown.extend(SHOTS.iter().filter_map(|(_, _, front, _)| *front));
+        let missing: Vec<_> = PanelId::ALL.into_iter().filter(|panel| !shown.contains(panel)).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+    }
 
     #[test]
     fn a_view_is_set_at_once_and_no_picture_is_taken_before_there_is_something_to_see() {

@@ -26,10 +26,9 @@ use nima_screen::{
     theme,
     widgets::{Sign, next_button, sign, small, weak, with_icon},
 };
-use nima_words::text::current_session::DisplayState;
 use nima_words::{
     report_text::{cure_of_refusal, refused_because, side_word, state_name},
-    text,
+    text::{self, current_session::DisplayState, of_files::of_file},
 };
 
 use crate::console::{
@@ -156,7 +155,8 @@ fn identity_ui(
     if ui.ctx().content_rect().width() >= SCENE_FROM {
         ui.add_space(4.0);
         let name = if has_real_arm(&live.rig) { &live.rig.name } else { &live.scene.name };
-        ui.label(weak(name)).on_hover_text(text::top_bar::scene_and_rig(&live.scene.description, &live.rig.name));
+        let [description, rig] = [&live.scene.description, &live.rig.name].map(|words| of_file(words));
+        ui.label(weak(of_file(name))).on_hover_text(text::top_bar::scene_and_rig(description, rig));
     }
 }
 

@@ -19,6 +19,7 @@ mod instruments;
 mod language;
 mod looks;
 mod monitor;
+mod pages;
 mod palette;
 mod playback;
 mod ready;

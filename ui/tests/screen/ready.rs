@@ -57,7 +57,7 @@ fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
     let mut console = console(&folder.path().join("calibrations"));
     until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
     pick(&mut console, "Set-up…");
-    read(&mut console, "Right arm: sensor SIM-S1-0001, Simulated grasper");
+    read(&mut console, "Sensor SIM-S1-0001, Simulated grasper");
     assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", less than a day old"));
     assert!(shows(&console, "not calibrated"), "the correspondence is missing");
     // The result of the bias check appears without a click.

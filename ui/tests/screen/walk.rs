@@ -14,7 +14,7 @@ use nima_machine::messages::LoopState;
 use nima_panels::{
     roles::Role,
     settings::SettingsStore,
-    tiles::{PanelId, PanelLayout},
+    tiles::{Arrangement, PanelId, PanelLayout},
 };
 use nima_wizards::WizardKind;
 
@@ -74,6 +74,24 @@ fn nothing_is_cut_or_overlaps_with_one_hand() {
 #[test]
 fn nothing_is_cut_or_overlaps_with_two_hands() {
     walk("bimanual");
+}
+
+#[test]
+fn nothing_is_cut_or_overlaps_with_large_controls() {
+    let mut harness = console_of("peg_transfer", SIZES[1], |app| app);
+    let settings = harness.state_mut().settings_mut();
+    settings.touch = true;
+    settings.layout = PanelLayout::built_in(Arrangement::Simple);
+    until(&mut harness, "a contact", |tick| tick.t_s > 1.5);
+    let mut all = Vec::new();
+    for role in [Role::Surgeon, Role::Technician, Role::Demo] {
+        for size in [SIZES[1], SIZES[2]] {
+            harness.state_mut().settings_mut().role = role;
+            let found = faults(&mut harness, size, Page::of_view(role));
+            all.extend(found.into_iter().map(|fault| format!("{role:?} {size:?}: {fault}")));
+        }
+    }
+    none(&all);
 }
 
 #[test]
@@ -243,9 +261,15 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     let mut harness = begin(path.clone());
     until(&mut harness, "any tick", |_| true);
     bench::press(&mut harness, "Continue with the simulated rig");
+    let back = |harness: &Harness<'_, ConsoleApp>| harness.get_by_label("Step back").rect();
+    harness.run_steps(4);
+    let place = back(&harness);
     for button in ["Next step", "Next step", "Step back", "Next step", "Next step"] {
         assert!(harness.query_by_role_and_label(accesskit::Role::Button, "Stop").is_some());
         bench::press(&mut harness, button);
+        harness.run_steps(4);
+        let now = back(&harness);
+        assert!((now.center() - place.center()).length() < 1.5, "the buttons stay under the pointer: {place:?} {now:?}");
     }
     bench::press(&mut harness, "Stop");
     until(&mut harness, "stopped during the tour", |tick| tick.state == LoopState::Stopped);

@@ -52,7 +52,7 @@ impl eframe::App for Fixture {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         ScrollArea::vertical().show(ui, |ui| {
             ui.set_max_width(760.0);
-            if let Some(WizardPageRequest::Save(saving)) = self.wizards.ui(ui, &self.binding) {
+            if let Some(WizardPageRequest::Save(saving)) = self.wizards.ui(WizardKind::TipForce, ui, &self.binding) {
                 self.saving.get_or_insert(saving);
             }
         });
@@ -71,7 +71,7 @@ impl Console {
         scene.person.as_mut().unwrap().flaw = flaw;
         let calibrations = Calibrations { gravity: Some(gravity.model), ..Calibrations::default() };
         let bench = Fixture {
-            wizards: Wizards::at(WizardKind::TipForce),
+            wizards: Wizards::default(),
             binding: Binding {
                 sensor: gravity.head.sensor.clone(),
                 tool: gravity.head.tool.clone(),
@@ -92,9 +92,9 @@ impl Console {
     /// Advances the rig for a moment, then draws the window.
     fn step(&mut self) {
         let wizards = &mut self.window.state_mut().wizards;
-        let ticks = self.rig.go_on(TICKS, wizards.prompt());
+        let ticks = self.rig.go_on(TICKS, wizards.prompt(WizardKind::TipForce));
         for tick in &ticks {
-            wizards.tick(tick, 1000.0);
+            wizards.tick(WizardKind::TipForce, tick, 1000.0);
         }
         self.window.step();
     }
@@ -164,14 +164,20 @@ fn model_path(folder: &Path) -> PathBuf {
     Store::open(folder).path_of("tip-force", &records().0.head.sensor, "safetensors").unwrap()
 }
 
-/// Returns the real console on a running loop, with the data of the wizards.
-fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
+/// Returns the real console on a running loop; with wizards, that of the tip force is open with their data.
+fn real_console(wizards: Option<Wizards>, folder: &Path) -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
     let calibrations = ActiveCalibrations::load(Some(folder), &rig, &scene).calibrations(&rig);
     let plan = SimulationPlan { rig, scene, calibrations, engage: false };
     let folder = folder.to_owned();
-    shown(&plan, [1600.0, 1500.0], move |app| app.with_store(&folder).with_wizards(wizards))
+    shown(&plan, [1600.0, 1500.0], move |app| {
+        let app = app.with_store(&folder);
+        match wizards {
+            Some(wizards) => app.with_wizards(WizardKind::TipForce, wizards),
+            None => app,
+        }
+    })
 }
 
 #[test]
@@ -211,7 +217,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     image::same(&mut console.window, "wizard-tipforce-save");
     assert!(!model_path(folder.path()).exists(), "nothing is kept without being asked");
     let wizards = std::mem::take(&mut console.window.state_mut().wizards);
-    let mut real = real_console(wizards, folder.path());
+    let mut real = real_console(Some(wizards), folder.path());
     pick(&mut real, "Save and use");
     read(&mut real, "Saved and in use");
     let lines = real.state().active().lines();
@@ -270,7 +276,7 @@ fn a_sensor_that_is_lost_for_a_moment_costs_no_recording_and_another_one_does() 
 fn without_a_correspondence_nothing_can_be_recorded() {
     let folder = tempfile::tempdir().unwrap();
     Store::open(folder.path()).save(&records().0).unwrap();
-    let mut real = real_console(Wizards::default(), folder.path());
+    let mut real = real_console(None, folder.path());
     pick(&mut real, "Calibrate tip force…");
     wait(&mut real, "the reason", |window| {
         window.query_by_label_contains("The correspondence is unknown: calibrate it first").is_some()

@@ -2,7 +2,7 @@
 
 use super::{Binding, CorrespondenceWizard, FrameKind, FrameWizard, SaveRequest, TipForceWizard, WizardKind, Wizards};
 
-/// Result of attending to the open wizard.
+/// Result of attending to a wizard.
 #[derive(Debug)]
 pub enum WizardOutcome {
     /// In progress, in this step, with the message of the wizard.
@@ -14,9 +14,8 @@ pub enum WizardOutcome {
 }
 
 impl Wizards {
-    /// Acts as the technician in the open wizard; `None` if none is open.
-    pub fn attend(&mut self, binding: &Binding) -> Option<WizardOutcome> {
-        let which = self.open?;
+    /// Acts as the technician in this wizard; `None` if this build lacks it.
+    pub fn attend(&mut self, which: WizardKind, binding: &Binding) -> Option<WizardOutcome> {
         let wizard = self.the_mut(which)?;
         wizard.refresh(binding);
         let steps = wizard.steps();
@@ -31,7 +30,7 @@ impl Wizards {
         let made = wizard.made(binding);
         Some(match made {
             Some(saving) if proven => {
-                self.forget_what_rests_on(&saving);
+                self.forget_what_rests_on(which, &saving);
                 WizardOutcome::Proven(saving)
             }
             Some(mut saving) => {
@@ -42,16 +41,16 @@ impl Wizards {
         })
     }
 
-    /// Discards data that depend on the saved calibration. Pushes and recordings use the gravity calibration; those made with
+    /// Discards data that depend on the calibration that `which` saves. Pushes and recordings use the gravity calibration; those made with
     /// the previous one must not be mixed with new ones. The recordings of the other frame wizards belong to the previous rig
     /// file.
-    pub(super) fn forget_what_rests_on(&mut self, saving: &SaveRequest) {
+    pub(super) fn forget_what_rests_on(&mut self, which: WizardKind, saving: &SaveRequest) {
         if matches!(saving, SaveRequest::Gravity(_)) {
             self.correspondence = CorrespondenceWizard::default();
             self.tip_force = TipForceWizard::default();
         }
         if matches!(saving, SaveRequest::Frame(_) | SaveRequest::Undo(_)) {
-            for kind in FrameKind::ALL.into_iter().filter(|kind| self.open != Some(WizardKind::Frame(*kind))) {
+            for kind in FrameKind::ALL.into_iter().filter(|kind| which != WizardKind::Frame(*kind)) {
                 self.frames[kind as usize] = FrameWizard::new(kind);
             }
         }

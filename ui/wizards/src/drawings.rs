@@ -21,9 +21,12 @@ pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2,
     (pos2(centre.x + right as f32 * scale, centre.y - up as f32 * scale), depth)
 }
 
+/// Height of the drawing of a pose.
+pub(super) const POSE_HEIGHT: f32 = 250.0;
+
 /// Draws the tool in its current orientation (solid) and in the requested one (outline), with the angle between them.
 pub(super) fn pose_image(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
-    let size = vec2(ui.available_width().min(320.0), 250.0);
+    let size = vec2(ui.available_width().min(320.0), POSE_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, text::wizards::POSE_IMAGE.get()));
     let painter = ui.painter_at(rect);

@@ -190,6 +190,7 @@ struct GoingOn {
 /// Draws the row of steps with buttons for back, next and reset. Going back loses no data.
 fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -> Option<WizardRequest> {
     let mut wish = None;
+    let mut why = None;
     ui.horizontal_wrapped(|ui| {
         for (i, step) in steps.iter().enumerate() {
             if i < now {
@@ -227,9 +228,7 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
         if next.ui(ui, |name, enabled| next_button(name, enabled && is_offered).min_size(size)) {
             wish = Some(following.map_or(WizardRequest::GoTo(now + 1), WizardRequest::GoOn));
         }
-        if let (Err(reason), false) = (may, last) {
-            ui.label(small(reason));
-        }
+        why = may.err().filter(|_| !last);
         ui.add_space(24.0);
         if ui.button(text::wizards::START_OVER).on_hover_text(text::wizards::START_OVER_HOVER).clicked() {
             wish = Some(WizardRequest::StartOver);
@@ -242,6 +241,8 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
             }
         }
     });
+    // A separate line that is always drawn, so that no button moves when a reason appears.
+    ui.label(small(why.unwrap_or_default()));
     wish
 }
 
@@ -351,6 +352,12 @@ mod tests {
             };
             let mut window = Harness::builder().with_step_dt(0.03).build_ui_state(draw, Flickering::default());
             window.run_steps(4 + late);
+            let start_over = |window: &Harness<'_, Flickering>| window.get_by_label("Start over").rect();
+            let place = start_over(&window);
+            for _ in 0..4 {
+                window.step();
+                assert_eq!(start_over(&window), place, "the reason that comes and goes moves no button");
+            }
             window.get_by_label("Next").click();
             window.run_steps(8);
             assert_eq!(window.state().frame.step, 1, "{late} frames later");

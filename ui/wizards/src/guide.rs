@@ -11,7 +11,7 @@ use nima_words::text;
 
 use super::drawings::{on_paper, pose_image};
 
-const SIZE: Vec2 = vec2(240.0, 190.0);
+pub(super) const SIZE: Vec2 = vec2(240.0, 190.0);
 /// Angle of the tilted tools, rad.
 const TILT: f32 = 0.42;
 /// Length of the drawn tool.

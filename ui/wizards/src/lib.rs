@@ -20,14 +20,14 @@ mod tip_force;
 
 use std::sync::{Arc, OnceLock};
 
-use egui::{RichText, Ui};
+use egui::{Frame, Margin, RichText, Stroke, Ui};
 use nima_endoscope::DecodedImage;
 use nima_machine::{
     messages::Tick,
     rig::{Prompt, Side},
 };
 use nima_screen::{scene3d::side_name, theme, widgets::small};
-use nima_words::{report_text::side_word, text};
+use nima_words::text;
 
 pub use attend::WizardOutcome;
 pub use correspondence::CorrespondenceWizard;
@@ -68,6 +68,15 @@ impl GoOn {
     }
 }
 
+/// Draws the name of an arm on a chip of its colour.
+fn arm_chip(ui: &mut Ui, side: Side) {
+    let colour = theme::now().arms[side.index()];
+    let frame = Frame::new().stroke(Stroke::new(1.5, colour)).corner_radius(theme::CORNER);
+    frame.inner_margin(Margin::symmetric(8, 2)).show(ui, |ui| {
+        ui.label(RichText::new(text::calibrations::arm(side_name(side))).font(theme::strong(14.0)).color(colour));
+    });
+}
+
 /// The technician's request on a wizard's page.
 #[derive(Clone, Debug)]
 pub enum WizardPageRequest {
@@ -79,7 +88,6 @@ pub enum WizardPageRequest {
 /// All wizards; each keeps its data until it is reset.
 #[derive(Debug)]
 pub struct Wizards {
-    pub open: Option<WizardKind>,
     gravity: GravityWizard,
     correspondence: CorrespondenceWizard,
     tip_force: TipForceWizard,
@@ -92,7 +100,6 @@ pub struct Wizards {
 impl Default for Wizards {
     fn default() -> Self {
         Self {
-            open: None,
             gravity: GravityWizard::default(),
             correspondence: CorrespondenceWizard::default(),
             tip_force: TipForceWizard::default(),
@@ -103,10 +110,6 @@ impl Default for Wizards {
 }
 
 impl Wizards {
-    pub fn at(which: WizardKind) -> Self {
-        Self { open: Some(which), ..Self::default() }
-    }
-
     fn the(&self, which: WizardKind) -> Option<&dyn Wizard> {
         Some(match which {
             WizardKind::Gravity => &self.gravity,
@@ -127,28 +130,33 @@ impl Wizards {
         })
     }
 
-    /// Adds one tick of a loop of this rate (Hz).
-    pub fn tick(&mut self, tick: &Tick, rate_hz: f64) {
-        if let Some(wizard) = self.open.and_then(|which| self.the_mut(which)) {
+    /// Adds one tick of a loop of this rate (Hz) to this wizard.
+    pub fn tick(&mut self, which: WizardKind, tick: &Tick, rate_hz: f64) {
+        if let Some(wizard) = self.the_mut(which) {
             wizard.tick(tick, rate_hz);
         }
     }
 
     /// Passes the endoscope's newest image to a wizard that uses it; `newest` is called only then.
-    pub fn see(&mut self, newest: impl FnOnce() -> Option<(u64, Arc<DecodedImage>)>, ctx: &egui::Context) {
-        if let Some(wizard) = self.camera.as_mut().filter(|_| self.open == Some(WizardKind::Camera)) {
+    pub fn see(
+        &mut self,
+        which: WizardKind,
+        newest: impl FnOnce() -> Option<(u64, Arc<DecodedImage>)>,
+        ctx: &egui::Context,
+    ) {
+        if let Some(wizard) = self.camera.as_mut().filter(|_| which == WizardKind::Camera) {
             wizard.see(newest(), ctx);
         }
     }
 
-    /// Returns whether the open wizard is followed by looking at the endoscope image.
-    pub fn looks_at_image(&self) -> bool {
-        self.open == Some(WizardKind::Frame(FrameKind::View)) && self.frames[FrameKind::View as usize].records()
+    /// Returns whether this wizard is followed by looking at the endoscope image.
+    pub fn looks_at_image(&self, which: WizardKind) -> bool {
+        which == WizardKind::Frame(FrameKind::View) && self.frames[FrameKind::View as usize].records()
     }
 
-    /// Returns the current instruction to the person at the arm.
-    pub fn prompt(&self) -> Prompt {
-        self.open.and_then(|which| self.the(which)).map_or(Prompt::Rest, Wizard::prompt)
+    /// Returns this wizard's current instruction to the person at the arm.
+    pub fn prompt(&self, which: WizardKind) -> Prompt {
+        self.the(which).map_or(Prompt::Rest, Wizard::prompt)
     }
 
     /// Chooses between the two parts of a view.
@@ -158,31 +166,35 @@ impl Wizards {
         }
     }
 
-    /// Returns the calibration of the open wizard.
-    pub fn wanted(&self, side: Side) -> Option<CalibrationTarget> {
-        let which = self.open?;
+    /// Returns the calibration of this wizard.
+    pub fn wanted(&self, which: WizardKind, side: Side) -> CalibrationTarget {
         let by_handle =
             which == WizardKind::Frame(FrameKind::View) && self.frames[FrameKind::View as usize].goes_the_other_way();
-        Some(CalibrationTarget { side, which, by_handle })
+        CalibrationTarget { side, which, by_handle }
     }
 
-    /// Shows the result of saving in the open wizard, and the step after it.
-    pub fn report_saved(&mut self, report: Result<String, String>, following: Option<GoOn>) {
-        if let Some(wizard) = self.open.and_then(|which| self.the_mut(which)) {
+    /// Shows the result of saving in this wizard, and the step after it.
+    pub fn report_saved(&mut self, which: WizardKind, report: Result<String, String>, following: Option<GoOn>) {
+        if let Some(wizard) = self.the_mut(which) {
             wizard.frame_mut().report_saved(report, following);
         }
     }
 
-    /// Draws the open wizard; returns its request.
-    pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardPageRequest> {
-        let which = self.open?;
-        let arm = binding.subject.as_ref().map(|subject| side_word(subject.side));
-        ui.label(RichText::new(text::wizards::title(which.name(), arm)).font(theme::strong(22.0)));
+    /// Draws this wizard; returns its request.
+    pub fn ui(&mut self, which: WizardKind, ui: &mut Ui, binding: &Binding) -> Option<WizardPageRequest> {
+        let side = binding.subject.as_ref().map(|subject| subject.side);
+        ui.horizontal(|ui| {
+            let title = RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0));
+            ui.label(title);
+            if let Some(side) = side {
+                arm_chip(ui, side);
+            }
+        });
         ui.label(small(which.meaning()));
         ui.add_space(theme::GAP);
         let asked = wizard_ui(self.the_mut(which)?, ui, binding)?;
         if let WizardPageRequest::Save(saving) = &asked {
-            self.forget_what_rests_on(saving);
+            self.forget_what_rests_on(which, saving);
         }
         Some(asked)
     }

@@ -89,6 +89,10 @@ impl Text {
         Self { english, german }
     }
 
+    pub const fn english(self) -> &'static str {
+        self.english
+    }
+
     /// Returns the text in the language of this thread.
     pub fn get(self) -> &'static str {
         match current() {

@@ -348,10 +348,10 @@ impl FollowerEnd for Learner {
         let measured = if is_paper { seen.usable } else { seen.good };
         let model = *self.step(seen.posture, measured.then_some(seen.force_n), sent);
         if is_paper {
-            report.nima_degree = model.degree;
+            report.degrees.nima = model.degree;
             parcel.models.nima = model;
         } else {
-            report.matched_degree = model.degree;
+            report.degrees.matched = model.degree;
             parcel.models.matched = model;
         }
     }

@@ -36,7 +36,7 @@ impl ReplayTally {
 
     pub(super) fn add(&mut self, row: &ReplayRow, report: &IdentificationReport) {
         self.renewals.add(&row.measured);
-        if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
+        if let Some(chosen) = usize::from(report.degrees.paper).checked_sub(1) {
             for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
                 errors.add(residual);
             }

@@ -154,7 +154,8 @@ fn rate_ui(ui: &mut Ui, health: &Health) {
     let figures = figures(health);
     cell(ui, RATE, |ui| {
         let words = match health.standing {
-            ConnectionState::Connected => format!("{:.0}", health.rate_hz),
+            // Zero until the first interval has been counted.
+            ConnectionState::Connected if health.rate_hz > 0.0 => format!("{:.0}", health.rate_hz),
             _ => "\u{2013}".to_owned(),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -15,7 +15,7 @@ use nima_screen::{
 };
 use nima_words::{
     report_text::{mode_meaning, mode_name, newtons, newtons_read},
-    text,
+    text::{self, of_files::of_file},
 };
 
 use super::{Panels, acts};
@@ -107,7 +107,7 @@ fn reported_ui(ui: &Ui, live: &LiveState, place: Rect) {
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);
     let text = place.left_top() + vec2(16.0, 16.0);
-    painter.text(text, Align2::LEFT_TOP, &live.scene.name, theme::strong(17.0), theme::now().text);
+    painter.text(text, Align2::LEFT_TOP, of_file(&live.scene.name), theme::strong(17.0), theme::now().text);
     for (i, (rendered, words)) in
         [(false, text::roles::MEASURED.get()), (true, text::roles::RENDERED.get())].into_iter().enumerate()
     {

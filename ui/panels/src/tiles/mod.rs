@@ -217,6 +217,10 @@ impl DeskContents<'_> {
     fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: PanelId) {
         let mut bar = ui.new_child(UiBuilder::new().max_rect(place).id_salt("close"));
         bar.set_clip_rect(place);
+        // The bar has the same height with large controls for touch.
+        let spacing = bar.spacing_mut();
+        spacing.button_padding = spacing.button_padding.min(vec2(10.0, 5.0));
+        spacing.interact_size.y = spacing.interact_size.y.min(CLOSE.y);
         let button = Button::new(RichText::new("\u{d7}").font(theme::regular(16.0))).frame_when_inactive(false);
         let button = bar.add(button.min_size(CLOSE));
         let name = text::tiles::close(panel.title());

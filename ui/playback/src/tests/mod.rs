@@ -7,30 +7,26 @@ use std::{
 };
 
 use egui::Context;
-use nima_core::impedance::Mode;
 use nima_machine::{
     config::RigConfig,
     messages::{Command, Tick},
-    rig::{SIDES, Side, TaskAction},
     runtime::{self, Assembly, VirtualClock},
 };
 use nima_recording::session::SessionReader;
-use nima_screen::{
-    objects::{OfSimulation, objects},
-    recording,
-    scene3d::SceneView,
-};
+use nima_screen::{recording, scene3d::SceneView};
 use nima_session::{
     file::{LineKind, RecordedFile},
-    objects::ObjectStates,
     plot_channels,
     replay::replay,
     sinks::Destination,
     trim,
 };
-use nima_simulation::{SimulationPlan, Training, scene::Scene};
+use nima_simulation::{SimulationPlan, scene::Scene};
 
+mod damage;
 mod images;
+mod signals;
+mod training;
 
 use super::Playback;
 
@@ -46,27 +42,6 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
         (tick.side.index() == 0).then(|| command(tick.index)).flatten()
     });
     recorder.finish().unwrap();
-}
-
-/// Returns a session of a scene with a training task, and the objects that the screen received. Before each tick of the
-/// right arm, by its number, a command may be given.
-fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> Option<Command>) -> Vec<ObjectStates> {
-    let mut rig = RigConfig::load("simulated").unwrap();
-    let scene = Scene::load(scene).unwrap();
-    let has_jaws = [scene.objects.is_some(); SIDES];
-    rig.mode = Mode::Matched;
-    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: true };
-    let (tap, recorder) = recording::begin(Destination::file(path), &plan, Some(VirtualClock::PERFECT)).unwrap();
-    let (assembly, watched) = plan.watched().unwrap();
-    let mut watched = watched.unwrap();
-    recorder.watch(OfSimulation::source(&plan, watched.another().unwrap()));
-    let mut report = Vec::new();
-    runtime::run_virtual(Assembly { tap: Some(tap), ..assembly }, seconds, |tick| {
-        report.extend(watched.moments().map(|moment| objects(&moment, has_jaws)));
-        (tick.side == Side::Right).then(|| command(tick.index)).flatten()
-    });
-    recorder.finish().unwrap();
-    report
 }
 
 /// Returns all ticks of the right arm, and of the left.
@@ -224,82 +199,6 @@ fn what_happened_is_marked_along_the_time() {
     assert!((max_n - shown_n).abs() < 1e-4, "{shown_n} N of {max_n} N");
 }
 
-#[test]
-fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("session.mcap");
-    let report = record_task("rings", &path, 6.0, |_| None);
-    assert_eq!(report.len(), 600);
-    let mut past = open(&path);
-    until(&mut past, "read", |past| past.read_share() > 0.999);
-    // Objects on the screen are at most 0.01 s old.
-    let then = |t_s: f64| report.iter().rfind(|objects| objects.t_s < t_s + 1e-7).unwrap();
-    let shown = |past: &Playback| past.live.as_ref().and_then(|live| live.objects.clone());
-    let same = |past: &Playback| {
-        let mut objects = shown(past)?;
-        let expected = then(past.shown_s());
-        assert!((objects.t_s - expected.t_s).abs() < 1e-8, "{} s, not {} s", objects.t_s, expected.t_s);
-        objects.t_s = expected.t_s;
-        Some(objects == *expected)
-    };
-    for t_s in [0.005, 1.234, 4.0, 5.99] {
-        settled(&mut past, t_s);
-        assert_eq!(same(&past), Some(true), "at {t_s} s");
-    }
-    past.show(3.0);
-    past.live = None;
-    until(&mut past, "shown at once", |past| past.live.is_some());
-    assert_eq!(same(&past), Some(true));
-    // The left instrument's jaws close on the first ring at 2 s.
-    settled(&mut past, 1.4);
-    past.toggle();
-    let openings = (0..60).map(|_| {
-        let before = past.shown_s();
-        past.step(0.05, false);
-        until(&mut past, "went on", |past| past.shown_s() > before);
-        assert_eq!(same(&past), Some(true), "at {} s", past.shown_s());
-        shown(&past).unwrap().jaws[1].unwrap().opening_rad
-    });
-    let openings: Vec<f64> = openings.collect();
-    assert!(openings.iter().any(|rad| *rad > 0.5) && openings.iter().any(|rad| *rad < 0.3), "{openings:?}");
-    let grasped = past.overview.notes.iter().find(|note| note.kind == LineKind::Happening);
-    assert!(grasped.is_some_and(|note| note.words.contains("grasped by the left instrument")), "{grasped:?}");
-}
-
-#[test]
-fn pins_and_the_loop_on_the_wire_are_shown_as_they_were() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("lumps.mcap");
-    let act = |tick: u64, at: u64, act| (tick == at).then_some(Command::Task(Side::Right, act));
-    let report = record_task("find_lumps", &path, 3.0, |tick| {
-        let marks = act(tick, 900, TaskAction::Mark).or_else(|| act(tick, 1800, TaskAction::Mark));
-        marks.or_else(|| act(tick, 2400, TaskAction::End))
-    });
-    let shown_of = |path: &Path, report: &[ObjectStates], times_s: &[f64]| -> Vec<Training> {
-        let mut past = open(path);
-        until(&mut past, "read", |past| past.read_share() > 0.999);
-        let shown = times_s.iter().map(|t_s| {
-            settled(&mut past, *t_s);
-            let live = past.live.as_ref().unwrap();
-            let expected = report.iter().rfind(|objects| objects.t_s < past.shown_s() + 1e-7).unwrap();
-            assert_eq!(live.objects.as_ref().unwrap().task, expected.task, "at {t_s} s");
-            live.training.unwrap()
-        });
-        shown.collect()
-    };
-    let shown = shown_of(&path, &report, &[0.5, 1.5, 2.2, 2.9]);
-    let marks = |training: &Training| training.marks.iter().flatten().count();
-    assert_eq!(shown.iter().map(marks).collect::<Vec<_>>(), [0, 1, 2, 2]);
-    assert_eq!(shown.iter().map(|training| training.ended).collect::<Vec<_>>(), [false, false, false, true]);
-    let path = folder.path().join("wire.mcap");
-    let report = record_task("wire", &path, 8.0, |_| None);
-    let touches_s = report.iter().find(|objects| objects.task.as_ref().is_some_and(|task| task.loops[0].touches));
-    let touches_s = touches_s.unwrap().t_s;
-    let shown = shown_of(&path, &report, &[0.2, touches_s + 1e-4, 7.9]);
-    assert!(!shown[0].loops[0].touches && shown[1].loops[0].touches && shown[1].loops[0].on_wire, "{shown:?}");
-    assert!(shown[2].fraction > 0.1 && shown[2].touches >= 1, "{shown:?}");
-}
-
 fn stretch(from: &Path, to: &Path, seconds: Range<f64>) {
     let reader = SessionReader::open(from).unwrap();
     let begin_ns = plot_channels::beginning_ns(&reader).unwrap();
@@ -343,40 +242,6 @@ fn a_stretch_is_saved_beside_its_session_and_kept() {
     let outcome = replay(RecordedFile::open(&saved).unwrap().journal().unwrap(), |_| ()).unwrap();
     assert!(outcome.ticks >= 2200 && outcome.differs.is_none(), "{outcome:?}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "no half a file is left");
-}
-
-#[test]
-fn damage_costs_what_is_damaged_and_is_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("session.mcap");
-    record(&path, "peg_transfer", 10.0, |_| None);
-    let ticks = replayed(&path);
-    let mut bytes = std::fs::read(&path).unwrap();
-    let middle = bytes.len() * 6 / 10;
-    bytes[middle..middle + 64].fill(0xa5);
-    std::fs::write(&path, bytes).unwrap();
-    let mut past = open(&path);
-    until(&mut past, "read", |past| past.read_share() > 0.999);
-    assert!(past.report.limited.is_some() && past.refused().is_none(), "{:?}", past.report);
-    settled(&mut past, 2.0);
-    assert!(same(&past.live.as_ref().unwrap().ticks, &ticks[2000]));
-    past.show(9.0);
-    past.live = None;
-    until(&mut past, "shown behind the damage", |past| past.live.is_some());
-    let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
-    assert_eq!((shown.t_s, shown.measured_n), (9.0, ticks[9000][0].unwrap().measured_n));
-}
-
-#[test]
-fn what_is_no_session_is_refused_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("session.mcap");
-    for content in ["", "not a session at all"] {
-        std::fs::write(&path, content).unwrap();
-        let mut past = open(&path);
-        until(&mut past, "refused", |past| past.refused().is_some());
-        assert!(!past.refused().unwrap().contains('\n') && past.live.is_none());
-    }
 }
 
 #[test]

@@ -11,13 +11,13 @@ use egui::{
 use nima_words::text;
 
 use super::{
-    Signs, judge,
+    AlarmPriority, Signs, judge,
     log::{AlarmEntry, AlarmLog, AlarmMoment},
     sound::Sound,
 };
 use crate::{
     theme,
-    widgets::{Sign, at_the_right, fitting, fitting_style, sign, small, weak},
+    widgets::{Sign, at_the_right, fitting, fitting_style, sign, sign_ui, small, weak},
 };
 
 /// Height of the strip: two lines of text.
@@ -59,7 +59,9 @@ impl Alarms {
             .outer_margin(Margin { left: 1, right: 1, top: 0, bottom: 1 });
         let mut acknowledged = false;
         let mut opened = false;
-        Panel::top("alarms").exact_size(HEIGHT).resizable(false).frame(frame).show(ui, |ui| {
+        // Large controls for touch need more.
+        let height = HEIGHT.max(ui.spacing().interact_size.y + 4.0);
+        Panel::top("alarms").exact_size(height).resizable(false).frame(frame).show(ui, |ui| {
             ui.horizontal_centered(|ui| {
                 match (&first, colour) {
                     (Some(first), Some(colour)) => opened |= words_ui(ui, first, others, colour),
@@ -164,10 +166,27 @@ fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> 
 
 fn entry_ui(ui: &mut Ui, entry: &AlarmEntry) {
     let ink = if entry.ended.is_none() { theme::now().text } else { theme::now().text_weak };
-    ui.add(Label::new(small(heading(entry))).wrap());
+    ui.horizontal(|ui| {
+        let (what, colour) = sign_of(entry);
+        sign_ui(ui, what, 6.0, colour);
+        ui.add(Label::new(small(heading(entry))).wrap());
+    });
     ui.add(Label::new(RichText::new(&entry.alarm.cause).font(theme::strong(14.0)).color(ink)).wrap());
     ui.add(Label::new(weak(&entry.alarm.cure)).wrap());
     ui.add_space(6.0);
+}
+
+/// Returns the symbol of an alarm: filled with the colour of its priority while its cause is present.
+fn sign_of(entry: &AlarmEntry) -> (Sign, Color32) {
+    let palette = theme::now();
+    if entry.ended.is_some() {
+        return (Sign::Ring, palette.text_weak);
+    }
+    match entry.alarm.priority {
+        AlarmPriority::High => (Sign::Octagon, palette.alarm_high),
+        AlarmPriority::Medium => (Sign::Triangle, palette.alarm_medium),
+        AlarmPriority::Low => (Sign::Disc, palette.alarm_low),
+    }
 }
 
 /// Returns an alarm as text for the clipboard.

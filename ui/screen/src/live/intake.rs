@@ -124,8 +124,9 @@ impl LiveState {
         self.degrees.push(tick, dt_s);
         let compares = self.compares();
         self.compare_cost.push(tick, compares);
-        // Without a measured force there is no error.
-        let errors_n = tick.known_n().map(|_| tick.identification.horizon_error_n);
+        // Without a measured force there is no error; zero means that no prediction was judged yet.
+        let judged = |error_n: f64| if error_n > 0.0 { error_n } else { f64::NAN };
+        let errors_n = tick.known_n().map(|_| tick.identification.horizon_error_n.map(judged));
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
             self.trend_n.push_back(errors_n.unwrap_or([f64::NAN; SLOTS]));
             if self.trend_n.len() > TREND_S {
@@ -136,7 +137,9 @@ impl LiveState {
             self.horizon = Default::default();
         }
         for (mean, error_n) in self.horizon.iter_mut().zip(errors_n.into_iter().flatten()) {
-            mean.push(error_n, dt_s, 4.0);
+            if error_n.is_finite() {
+                mean.push(error_n, dt_s, 4.0);
+            }
         }
         self.wake.record(tick.timing.wake_s);
         self.work.record(tick.timing.work_s);

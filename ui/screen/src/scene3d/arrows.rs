@@ -24,6 +24,11 @@ pub(super) fn has_arrow(force_n: &Vector3<f32>) -> bool {
     size_and_direction(force_n).is_some()
 }
 
+/// Lengths of the heads of long arrows, and their radius; a short arrow is thinner in the same proportion, or it would be a disc.
+const MEASURED_HEAD_M: f32 = 0.007;
+const RENDERED_HEAD_M: f32 = 0.009;
+const HEAD_RADIUS_M: f32 = 0.0023;
+
 /// Radius around the tip that no arrow covers, m.
 const CLEAR_M: f32 = 0.0035;
 
@@ -63,14 +68,15 @@ pub(super) fn measured_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vect
     let paint = Paint(theme::DARK.measured, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
-    let head = 0.007_f32.min(length * 0.6);
+    let head = MEASURED_HEAD_M.min(length * 0.6);
+    let thin = head / MEASURED_HEAD_M;
     let shaft = length - head;
     let pieces = (shaft / PIECE_M).ceil().max(1.0) as u32;
     for piece in 0..pieces {
         let ends = [piece, piece + 1].map(|end| base + along * (end as f32 * shaft / pieces as f32));
-        clear.part(mesh, ends, [0.0008; 2], 14, paint);
+        clear.part(mesh, ends, [0.0008 * thin; 2], 14, paint);
     }
-    clear.part(mesh, [base + along * shaft, base + along * length], [0.0023, 0.0], 18, paint);
+    clear.part(mesh, [base + along * shaft, base + along * length], [HEAD_RADIUS_M * thin, 0.0], 18, paint);
 }
 
 /// Draws a beaded shaft with a double cone: the shape alone distinguishes it from the other arrow.
@@ -80,18 +86,19 @@ pub(super) fn rendered_arrow(mesh: &mut Mesh, base: Vector3<f32>, force_n: &Vect
     let paint = Paint(theme::DARK.rendered, Material::Plain);
     let Some((size_n, along)) = size_and_direction(force_n) else { return };
     let length = size_n * ARROW_M_PER_N;
-    let head = 0.009_f32.min(length * 0.6);
+    let head = RENDERED_HEAD_M.min(length * 0.6);
+    let thin = head / RENDERED_HEAD_M;
     let shaft = length - head;
     let beads = (shaft / BEAD_M).ceil().max(1.0) as u32;
     for bead in 0..beads {
         let from = bead as f32 * shaft / beads as f32;
         let to = from + 0.62 * shaft / beads as f32;
-        clear.part(mesh, [base + along * from, base + along * to], [0.0011; 2], 14, paint);
+        clear.part(mesh, [base + along * from, base + along * to], [0.0011 * thin; 2], 14, paint);
     }
     for half in [0.0, 0.45] {
         let from = shaft + head * half;
         let ends = [base + along * from, base + along * (from + head * 0.55)];
-        clear.part(mesh, ends, [0.0023, 0.0], 18, paint);
+        clear.part(mesh, ends, [HEAD_RADIUS_M * thin, 0.0], 18, paint);
     }
 }
 
@@ -101,6 +108,22 @@ mod tests {
 
     const EYE_M: Vector3<f32> = Vector3::new(0.0, -0.3, 0.2);
     const RIGHT: Vector3<f32> = Vector3::new(1.0, 0.0, 0.0);
+
+    #[test]
+    fn the_head_of_a_short_arrow_is_no_disc() {
+        let far = Vector3::new(1.0, 1.0, 0.0);
+        let clear = ClearTip { tip_m: &far, eye_m: &EYE_M };
+        let width_m = |force_n: f32| {
+            let mut mesh = Mesh::default();
+            rendered_arrow(&mut mesh, Vector3::zeros(), &(Vector3::z() * force_n), clear);
+            let across = mesh.vertices.iter().map(|vertex| vertex.position[0].abs()).fold(0.0, f32::max);
+            (across, mesh.vertices.iter().map(|vertex| vertex.position[2]).fold(0.0, f32::max))
+        };
+        let (across_m, length_m) = width_m(4.0);
+        assert!(across_m < 0.2 * length_m);
+        let (across_m, length_m) = width_m(0.1);
+        assert!(across_m < 0.3 * length_m, "{across_m} {length_m}");
+    }
 
     #[test]
     fn no_arrow_covers_the_tip() {

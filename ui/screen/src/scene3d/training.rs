@@ -28,6 +28,8 @@ const MARK_FALSE: Paint = Paint(Color32::from_rgb(0x3a, 0x42, 0x4c), Material::M
 const PIN: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
 const LUMP: Paint = Paint(Color32::from_rgb(0x6a, 0x2f, 0x4e), Material::Matte);
 
+/// Largest width of the line about the trial, points: the longest text in the longest language fits.
+const LINE_MAX: f32 = 640.0;
 /// Width of the gauges at the right of the view, points.
 const GAUGES: f32 = 110.0;
 /// One in this many points of the wire's curve is drawn.
@@ -161,7 +163,7 @@ pub(super) fn report(live: &LiveState, led: Option<Side>, reach: Option<JawReach
 /// Above this delay, s, two hands that hold one ring excite each other through the link in the modes that carry force.
 const LONG_S: f64 = 0.01;
 
-/// Returns whether the rings will end in a fault in the current mode.
+/// Returns whether the rings can end in a fault in the current mode.
 pub(super) fn needs_another_mode(live: &LiveState) -> bool {
     let carries_force = matches!(live.mode(), Mode::Best | Mode::Anchored);
     let shares_rings = live.scene.objects.is_some() && live.is_bimanual();
@@ -186,7 +188,7 @@ pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: 
         rect
     };
     let place =
-        Rect::from_center_size(room.center_top() + vec2(0.0, 22.0), vec2(room.width().clamp(60.0, 520.0), 28.0));
+        Rect::from_center_size(room.center_top() + vec2(0.0, 22.0), vec2(room.width().clamp(60.0, LINE_MAX), 28.0));
     ui.painter_at(rect).rect_filled(place, theme::CORNER, theme::VEIL);
     ui.put(place, Label::new(RichText::new(words).font(theme::strong(14.0)).color(theme::DARK.text)).truncate());
 }

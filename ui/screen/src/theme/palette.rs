@@ -38,6 +38,8 @@ pub struct ColourPalette {
     pub reference: Color32,
     /// Several lines in one plot: axes x, y, z, or the members of an ensemble. They also differ in lightness.
     pub series: [Color32; 4],
+    /// The names of the right and the left arm.
+    pub arms: [Color32; 2],
     /// The frame around recorded data only.
     pub past: Color32,
     /// The frame of a rig at another machine, shown without control.
@@ -77,6 +79,7 @@ pub const DARK: ColourPalette = ColourPalette {
     rendered: rgb(0x6c_9dff),
     reference: rgb(0x8d_97a3),
     series: [rgb(0xf3_e9d2), rgb(0x6c_9dff), rgb(0x63_c28c), rgb(0xc2_7ddc)],
+    arms: [rgb(0xc3_b56e), rgb(0xe0_9cc2)],
     past: rgb(0xd5_73e4),
     watching: rgb(0xe9_8b3a),
     engaged: rgb(0x63_c28c),
@@ -105,6 +108,7 @@ pub const LIGHT: ColourPalette = ColourPalette {
     rendered: rgb(0x1a_5fd8),
     reference: rgb(0x5e_6974),
     series: [rgb(0x5d_4715), rgb(0x1a_5fd8), rgb(0x18_703f), rgb(0x8a_3ba8)],
+    arms: [rgb(0x62_5a12), rgb(0x8f_3468)],
     past: rgb(0x93_2fa8),
     watching: rgb(0xa0_4e00),
     engaged: rgb(0x18_703f),
@@ -152,6 +156,7 @@ mod tests {
             ("watching", palette.watching),
         ];
         inks.extend(palette.series.map(|colour| ("series", colour)));
+        inks.extend(palette.arms.map(|colour| ("arms", colour)));
         inks
     }
 

@@ -142,7 +142,7 @@ impl CalibrationBench {
 
     fn calibrate(&mut self, which: WizardKind, side: Side) -> anyhow::Result<()> {
         self.active.choose(side);
-        self.wizards = Wizards::at(which);
+        self.wizards = Wizards::default();
         let what = format!("{} arm, {}", side.word(), which.name().to_lowercase());
         let mut shown = None;
         let mut since = Instant::now();
@@ -150,13 +150,13 @@ impl CalibrationBench {
             if self.leave.is_asked() {
                 bail!("ended on request; the finished calibrations are saved");
             }
-            self.look(side)?;
+            self.look(side, which)?;
             let binding = self.binding();
             if binding.sensor.is_empty() {
                 Self::wait(since, &what, "the wrist sensor", self.missing().as_deref())?;
                 continue;
             }
-            match self.wizards.attend(&binding).context("no wizard is open")? {
+            match self.wizards.attend(which, &binding).context("this build lacks the wizard")? {
                 WizardOutcome::Proven(saving) => break saving,
                 WizardOutcome::NotProven(reason) => bail!("{what}: not proven: {reason}"),
                 WizardOutcome::Working(step, notice) => {
@@ -196,7 +196,7 @@ impl CalibrationBench {
     }
 
     /// Receives the data of the loop, and shows the wizard's instruction to the technician.
-    fn look(&mut self, side: Side) -> anyhow::Result<()> {
+    fn look(&mut self, side: Side, which: WizardKind) -> anyhow::Result<()> {
         let Some(handle) = &self.handle else { bail!("the loop has ended") };
         if !handle.is_running() {
             bail!("the loop has ended");
@@ -204,15 +204,15 @@ impl CalibrationBench {
         let rate_hz = self.plan.rig.rate_hz;
         handle.drain_ticks(|tick| {
             if tick.side == side {
-                self.wizards.tick(tick, rate_hz);
+                self.wizards.tick(which, tick, rate_hz);
             }
             self.active.watch(tick);
             self.ticks[tick.side.index()] = Some(*tick);
         });
         handle.drain_events(|_| {});
         self.active.meet(handle, &self.plan.rig);
-        let prompt = self.wizards.prompt();
-        self.reader.show(Screen { side, task: task_of(self.wizards.open), prompt }, &mut self.read);
+        let prompt = self.wizards.prompt(which);
+        self.reader.show(Screen { side, task: task_of(Some(which)), prompt }, &mut self.read);
         let tick = self.ticks[side.index()];
         if tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.guidance.prompt != prompt) {
             handle.send(Command::Prompt(side, prompt));

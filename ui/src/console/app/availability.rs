@@ -9,49 +9,13 @@ use nima_panels::{
 use nima_wizards::WizardKind;
 use nima_words::text;
 
-use super::ConsoleApp;
+use super::{ConsoleApp, shown_page::ShownPage};
 use crate::console::commands::{Action, Availability};
 
-/// Content below the top bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ActivePage {
-    Trial,
-    Past,
-    List,
-    Check,
-    Listing,
-    Wizard,
-    Start,
-    OfExtra,
-    Monitor,
-}
-
 impl ConsoleApp {
-    pub(super) fn page(&self) -> ActivePage {
-        if self.in_trial() {
-            ActivePage::Trial
-        } else if self.past.is_some() {
-            ActivePage::Past
-        } else if self.list.is_open {
-            ActivePage::List
-        } else if self.checking.is_open() {
-            ActivePage::Check
-        } else if self.listing.is_open() {
-            ActivePage::Listing
-        } else if self.wizards.open.is_some() {
-            ActivePage::Wizard
-        } else if self.start.is_open {
-            ActivePage::Start
-        } else if self.is_page_shown() {
-            ActivePage::OfExtra
-        } else {
-            ActivePage::Monitor
-        }
-    }
-
     /// A person guides the arm, or a study is open: the views are locked, and the arm cannot be engaged.
     pub(super) fn is_calibrating(&self) -> bool {
-        self.wizards.open.is_some() || self.checking.is_open() || self.is_held() && !self.in_trial()
+        self.shown.guides_a_person() || self.is_held() && !self.in_trial()
     }
 
     pub(super) fn may(&self, action: Action) -> Availability {
@@ -68,7 +32,7 @@ impl ConsoleApp {
                 let is_quiet = !self.top_bar.alarms.log.has_unseen();
                 Availability::unless(is_quiet.then_some(text::commands::NO_ALARM.get()))
             }
-            Action::Mark => Availability::unless(self.past.is_some().then_some(text::playback::BLOCKED.get())),
+            Action::Mark => Availability::unless(self.shown.is_past().then_some(text::playback::BLOCKED.get())),
             Action::Keep => {
                 let nothing = self.sessions.shown().is_none();
                 Availability::unless(nothing.then_some(text::commands::NOTHING_RECORDED.get()))
@@ -90,10 +54,10 @@ impl ConsoleApp {
             }
             Action::Pause | Action::LastTenSeconds | Action::Draws(_) => self.may_draw(action),
             action if action.is_of_part() => self.may_in_part(action),
-            Action::LeavePast => Availability::Can.only_if(self.past.is_some()),
+            Action::LeavePast => Availability::Can.only_if(self.shown.is_past()),
             Action::Play | Action::Step(_) => {
-                let opening = self.past.as_ref().is_some_and(|past| past.live.is_none());
-                Availability::unless(opening.then_some(text::playback::OPENING.get())).only_if(self.past.is_some())
+                let opening = self.shown.past().is_some_and(|past| past.live.is_none());
+                Availability::unless(opening.then_some(text::playback::OPENING.get())).only_if(self.shown.is_past())
             }
             _ => Availability::Can,
         }
@@ -110,7 +74,7 @@ impl ConsoleApp {
             (Action::Engage, LoopState::Engaged | LoopState::Ready | LoopState::Clutched) => {
                 Some(text::commands::IS_ENGAGED.get())
             }
-            _ if self.past.is_some() => Some(text::playback::BLOCKED.get()),
+            _ if self.shown.is_past() => Some(text::playback::BLOCKED.get()),
             (Action::Engage, _) if self.is_calibrating() => Some(text::start::OPEN_DISABLED_HOVER.get()),
             _ => None,
         };
@@ -118,7 +82,7 @@ impl ConsoleApp {
     }
 
     fn may_turn_to(&self, action: Action) -> Availability {
-        let why = if self.past.is_some() {
+        let why = if self.shown.is_past() {
             Some(text::playback::BLOCKED.get())
         } else if self.is_held() && action == Action::Studies {
             Some(text::commands::STUDY_IS_OPEN.get())
@@ -126,7 +90,7 @@ impl ConsoleApp {
             Some(text::start::OPEN_DISABLED_HOVER.get())
         } else {
             // The page itself shows its progress.
-            let may_look = action == Action::Rig && !self.start.is_open;
+            let may_look = action == Action::Rig && !matches!(self.shown, ShownPage::Start);
             (self.starting.is_some() && !may_look).then_some(text::commands::IS_STARTING.get())
         };
         Availability::unless(why)
@@ -134,17 +98,17 @@ impl ConsoleApp {
 
     /// Returns the availability as on the Calibration panel, which is in the Technician view and next to the wizards.
     fn may_calibrate(&self, action: Action) -> Availability {
-        let page = self.page();
-        let is_beside = matches!(page, ActivePage::Check | ActivePage::Listing | ActivePage::Wizard);
+        let page = &self.shown;
+        let is_beside = matches!(page, ShownPage::Check(_) | ShownPage::Setup(_) | ShownPage::Wizard(_));
         if action == Action::CloseWizard {
             return Availability::Can.only_if(is_beside);
         }
         let rig = &self.live.rig;
         let (is_open, is_offered) = match action {
-            Action::Check => (page == ActivePage::Check, true),
-            Action::Calibrations => (page == ActivePage::Listing, true),
+            Action::Check => (matches!(page, ShownPage::Check(_)), true),
+            Action::Calibrations => (matches!(page, ShownPage::Setup(_)), true),
             Action::Calibrate(which) => {
-                let is_open = page == ActivePage::Wizard && self.wizards.open == Some(which);
+                let is_open = page.wizard() == Some(which);
                 let is_offered = match which {
                     WizardKind::Camera => rig.endoscope.is_some(),
                     _ => rig.devices.is_some() || which.scene().is_some(),
@@ -159,8 +123,8 @@ impl ConsoleApp {
             _ => text::calibrations::closed(self.live.state()),
         };
         let why = is_open.then_some(text::calibrations::IS_OPEN.get()).or(closed);
-        let why = self.past.is_some().then_some(text::playback::BLOCKED.get()).or(why);
-        let of_technician = self.role() == Role::Technician && matches!(page, ActivePage::Monitor | ActivePage::Past);
+        let why = self.shown.is_past().then_some(text::playback::BLOCKED.get()).or(why);
+        let of_technician = self.role() == Role::Technician && matches!(page, ShownPage::Monitor | ShownPage::Past(_));
         Availability::unless(why).only_if(is_offered && (is_beside || of_technician))
     }
 
@@ -208,9 +172,9 @@ impl ConsoleApp {
             (!matches!(action, Action::Drive | Action::BeginTrial) && !view.is_led())
                 .then_some(text::commands::DRIVE_FIRST.get())
         };
-        let is_here = match self.page() {
-            ActivePage::Trial => true,
-            ActivePage::Monitor => {
+        let is_here = match self.shown {
+            ShownPage::OfExtra => self.in_trial(),
+            ShownPage::Monitor => {
                 self.role() != Role::Surgeon || view.is_seen && (view.is_led() || self.live.rig.devices.is_none())
             }
             _ => false,
@@ -220,9 +184,11 @@ impl ConsoleApp {
 
     /// Returns the panels of the views on the screen: of the machine, or of the recorded session.
     fn panels_in_view(&self) -> Option<&Panels> {
-        match (self.page(), &self.past) {
-            (ActivePage::Past, Some(past)) if past.beside.is_none() && !self.list.is_open => Some(&past.panels),
-            (ActivePage::Monitor, _) => Some(&self.panels),
+        match &self.shown {
+            ShownPage::Past(past) if past.beside.is_none() && !past.is_choosing && !past.is_foreign() => {
+                Some(&past.panels)
+            }
+            ShownPage::Monitor => Some(&self.panels),
             _ => None,
         }
     }

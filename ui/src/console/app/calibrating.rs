@@ -13,9 +13,12 @@ use nima_wizards::{
     Binding, CalibrationTarget, GoOn, SaveRequest, WizardKind, WizardPageRequest, Wizards,
     overview::{following, overview},
 };
-use nima_words::text;
+use nima_words::{language::Text, text};
 
-use super::ConsoleApp;
+use super::{
+    ConsoleApp,
+    shown_page::{ShownPage, WayBack},
+};
 use crate::console::reader::task_of;
 
 /// Minimum width of a wizard next to the endoscope image, and the range of the image's width.
@@ -34,13 +37,13 @@ impl ConsoleApp {
             let rig = self.live.rig.clone();
             let scene = self.live.scene.clone();
             match if rests { Ok(()) } else { self.restart(rig, scene) } {
-                Ok(()) => self.wizards.open = Some(which),
+                Ok(()) => self.shown = ShownPage::Wizard(which),
                 Err(reason) => self.active.notify(text::calibrations::not_opened(&reason)),
             }
             return;
         };
         let here = which.suits(&self.live.scene) && self.live.scene.has(&self.live.rig, side);
-        let opened = if here && self.wizards.open.is_none() {
+        let opened = if here && self.shown.wizard().is_none() {
             Ok(())
         } else {
             let scene = Scene::load(scene).map_err(|error| nima_words::report_text::quoted(&error));
@@ -48,7 +51,7 @@ impl ConsoleApp {
             scene.and_then(|scene| self.restart_in(scene))
         };
         match opened {
-            Ok(()) => self.wizards.open = Some(which),
+            Ok(()) => self.shown = ShownPage::Wizard(which),
             Err(reason) => self.active.notify(text::calibrations::not_opened(&reason)),
         }
     }
@@ -63,12 +66,20 @@ impl ConsoleApp {
 
     /// Returns to the set-up page if the wizard was started there, and to the previous scene; the wizards keep their data.
     pub(super) fn close_wizard(&mut self) {
-        let returns = self.listing.leave();
-        self.wizards.open = None;
-        self.close_check();
+        let from = std::mem::take(&mut self.way_back);
+        let returns = from == WayBack::Setup && !matches!(self.shown, ShownPage::Setup(_));
+        self.leave_page();
         self.leave_scene();
         if returns {
-            self.open_listing();
+            self.open_setup();
+        }
+    }
+
+    /// Returns the name of the way back from a wizard or the check.
+    pub(super) const fn way_back(&self) -> Text {
+        match self.way_back {
+            WayBack::Monitor => text::calibrations::CLOSE_WIZARD,
+            WayBack::Setup => text::overview::BACK,
         }
     }
 
@@ -89,21 +100,22 @@ impl ConsoleApp {
         self.outbox.push(Command::Prompt(self.active.side(), Prompt::Rest));
         self.active.choose(side);
         self.forget_what_was_taken();
-        if let Some(which) = self.wizards.open.take() {
+        if let Some(which) = self.shown.wizard() {
+            self.leave_page();
             self.open_wizard(which);
         }
     }
 
     /// Resets the wizards, because their data are from another sensor.
     pub(super) fn forget_what_was_taken(&mut self) {
-        self.wizards = self.wizards.open.map_or_else(Wizards::default, Wizards::at);
+        self.wizards = Wizards::default();
     }
 
-    /// Saves a calibration and activates it.
-    pub(super) fn save(&mut self, saving: SaveRequest) {
+    /// Saves the calibration of this wizard and activates it.
+    fn save(&mut self, which: WizardKind, saving: SaveRequest) {
         let saved = self.saved(saving);
         // Read this before the restart, because afterwards the sensor must first be opened.
-        let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
+        let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(which, rig));
         let report = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
                 Ok(()) => Ok(words),
@@ -111,13 +123,13 @@ impl ConsoleApp {
             },
             Err(reason) => Err(text::calibrations::not_saved(&reason)),
         };
-        self.wizards.report_saved(report, following);
+        self.wizards.report_saved(which, report, following);
     }
 
-    /// Returns the step after the open calibration on this rig; a simulated rig needs no ready check.
-    fn following(&self, rig: &RigConfig) -> Option<GoOn> {
+    /// Returns the step after this calibration on this rig; a simulated rig needs no ready check.
+    fn following(&self, which: WizardKind, rig: &RigConfig) -> Option<GoOn> {
         let arms = overview(&self.active, rig, &self.running.rig);
-        let wanted = following(&arms, self.wizards.wanted(self.active.side()));
+        let wanted = following(&arms, Some(self.wizards.wanted(which, self.active.side())));
         wanted.map(GoOn::Calibrate).or(rig.devices.as_ref().map(|_| GoOn::Check))
     }
 
@@ -152,17 +164,18 @@ impl ConsoleApp {
 
     /// Sends the open wizard's instruction for the person at the arm, and shows it to the technician of an emulated rig.
     pub(super) fn ask(&mut self) {
-        if self.checking.is_open() {
+        if matches!(self.shown, ShownPage::Check(_)) {
             return;
         }
-        let wanted = self.wizards.prompt();
+        let open = self.shown.wizard();
+        let wanted = open.map_or(Prompt::Rest, |which| self.wizards.prompt(which));
         let side = self.active.side();
         if let Some(reader) = &self.reader {
-            reader.show(Screen { side, task: task_of(self.wizards.open), prompt: wanted }, &mut self.read);
+            reader.show(Screen { side, task: task_of(open), prompt: wanted }, &mut self.read);
         }
         let tick = self.live.tick_of(side);
         let asked = tick.is_some_and(|tick| tick.state == LoopState::Idle && tick.guidance.prompt != wanted);
-        if self.wizards.open.is_some() && asked {
+        if open.is_some() && asked {
             self.outbox.push(Command::Prompt(side, wanted));
         }
     }
@@ -175,33 +188,33 @@ impl ConsoleApp {
     }
 
     /// Lays out the Technician view with one wizard, the active calibrations, and the button to return.
-    pub(super) fn wizard_layout(&mut self, ui: &mut Ui) {
+    pub(super) fn wizard_layout(&mut self, ui: &mut Ui, which: WizardKind) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = PanelId::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                let open = self.wizards.open.map(CalibrationPage::Wizard);
-                calibrations_ui(ui, &self.live, &self.active, open, self.listing.way_back())
+                let open = Some(CalibrationPage::Wizard(which));
+                calibrations_ui(ui, &self.live, &self.active, open, self.way_back())
             });
         });
-        if self.wizards.looks_at_image() && self.panels.eyes.is_on() {
+        if self.wizards.looks_at_image(which) && self.panels.eyes.is_on() {
             let width = (ui.available_width() - WIZARD_MIN).clamp(IMAGE.0, IMAGE.1);
             Panel::right("image").exact_size(width).resizable(false).frame(side).show(ui, |ui| {
                 self.panels.eyes.ui(ui, &self.live);
             });
         }
         let binding = self.binding();
-        self.wizards.see(|| self.panels.eyes.newest(), ui.ctx());
+        self.wizards.see(which, || self.panels.eyes.newest(), ui.ctx());
         let mut asked = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(ui.available_width().min(760.0));
-                asked = self.wizards.ui(ui, &binding);
+                asked = self.wizards.ui(which, ui, &binding);
             });
         });
         match asked {
-            Some(WizardPageRequest::Save(saving)) => self.save(saving),
+            Some(WizardPageRequest::Save(saving)) => self.save(which, saving),
             Some(WizardPageRequest::GoOn(GoOn::Calibrate(wanted))) => self.open_wanted(wanted),
             Some(WizardPageRequest::GoOn(GoOn::Check)) => self.obey_calibrations(Some(CalibrationWish::Check)),
             None => {}
@@ -211,13 +224,9 @@ impl ConsoleApp {
 
     pub(super) fn obey_calibrations(&mut self, wish: Option<CalibrationWish>) {
         match wish {
-            Some(CalibrationWish::Open(which)) => {
-                self.close_check();
-                self.listing.close();
-                self.open_wizard(which);
-            }
+            Some(CalibrationWish::Open(which)) => self.open_wizard(which),
             Some(CalibrationWish::Check) => self.open_check(),
-            Some(CalibrationWish::List) => self.open_listing(),
+            Some(CalibrationWish::List) => self.open_setup(),
             Some(CalibrationWish::Choose(side)) => self.choose_arm(side),
             Some(CalibrationWish::Close) => self.close_wizard(),
             None => {}

@@ -14,7 +14,7 @@ use nima_simulation::scene::Scene;
 use nima_wizards::ready::{ReadyRequest, ReadyRun, devices_of, ready_ui, record, subject};
 use nima_words::{report_text::chain, text};
 
-use super::ConsoleApp;
+use super::{ConsoleApp, shown_page::ShownPage};
 
 /// The scene with a simulated person at the arm.
 const SCENE: &str = "correspondence";
@@ -25,8 +25,6 @@ const LOOK_EVERY: Duration = Duration::from_secs(5);
 
 #[derive(Debug, Default)]
 pub(super) struct CheckPage {
-    /// Time at which its page was opened.
-    open: Option<Instant>,
     run: Option<ReadyRun>,
     by: String,
     /// Path of the record, or the reason why it was not saved.
@@ -36,10 +34,6 @@ pub(super) struct CheckPage {
 }
 
 impl CheckPage {
-    pub(super) const fn is_open(&self) -> bool {
-        self.open.is_some()
-    }
-
     pub(super) const fn run_mut(&mut self) -> Option<&mut ReadyRun> {
         self.run.as_mut()
     }
@@ -64,6 +58,7 @@ impl CheckPage {
         self.valid = None;
     }
 
+    /// Discards unfinished points.
     fn begin_anew(&mut self) {
         self.run = None;
         self.saved = None;
@@ -73,8 +68,6 @@ impl CheckPage {
 impl ConsoleApp {
     /// Opens the page; a simulated rig changes to a scene with a person at the arm.
     pub(super) fn open_check(&mut self) {
-        self.wizards.open = None;
-        self.listing.close();
         let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected);
         let rig = self.live.rig.clone();
         let scene = self.live.scene.clone();
@@ -90,7 +83,7 @@ impl ConsoleApp {
         match opened {
             Ok(()) => {
                 self.checking.begin_anew();
-                self.checking.open = Some(Instant::now());
+                self.shown = ShownPage::Check(Instant::now());
                 if self.checking.by.is_empty() {
                     self.checking.by = std::env::var("USER").unwrap_or_default();
                 }
@@ -99,19 +92,16 @@ impl ConsoleApp {
         }
     }
 
-    /// Closes the page; unfinished points are discarded.
-    pub(super) fn close_check(&mut self) {
-        self.checking.open = None;
-        self.checking.begin_anew();
-    }
-
     fn roster(&self) -> Roster {
         self.door.as_ref().map_or_else(Roster::new, |door| door.handle().roster().clone())
     }
 
     pub(super) fn go_on_checking(&mut self) {
         self.look_for_a_check();
-        let Some(since) = self.checking.open else { return };
+        let ShownPage::Check(since) = self.shown else {
+            self.checking.begin_anew();
+            return;
+        };
         if self.checking.run.is_none() {
             if self.active.is_waiting() && since.elapsed() < SENSORS_WITHIN {
                 return;
@@ -167,7 +157,7 @@ impl ConsoleApp {
         Panel::left("calibrations").exact_size(316.0).resizable(false).frame(side).show(ui, |ui| {
             let panel = PanelId::Calibrations;
             wish = card(ui, panel.title(), panel.meaning(), |ui| {
-                calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::Check), self.listing.way_back())
+                calibrations_ui(ui, &self.live, &self.active, Some(CalibrationPage::Check), self.way_back())
             });
         });
         let mut wanted = None;

@@ -9,7 +9,7 @@ use nima_panels::{
     tiles::PanelLayout,
 };
 
-use super::ConsoleApp;
+use super::{ConsoleApp, shown_page::ShownPage};
 use crate::console::{
     commands::{Action, Availability, CommandEntry, table},
     help::Help,
@@ -52,7 +52,7 @@ impl ConsoleApp {
             // Leave it to the button, which waits a moment after every change of state.
             Action::Engage | Action::Release => self.top_bar.wants_step = Some(action),
             Action::View(role) => self.show_view(role, ctx),
-            Action::Rig if self.start.is_open => self.close_pages(),
+            Action::Rig if matches!(self.shown, ShownPage::Start) => self.leave_page(),
             Action::Rig => self.open_start(),
             Action::Sessions => self.toggle_list(),
             Action::Studies => self.toggle_page(),
@@ -64,7 +64,7 @@ impl ConsoleApp {
             Action::Calibrations => self.obey_calibrations(Some(CalibrationWish::List)),
             Action::Calibrate(which) => self.obey_calibrations(Some(CalibrationWish::Open(which))),
             Action::CloseWizard => self.obey_calibrations(Some(CalibrationWish::Close)),
-            Action::LeavePast => self.close_past(),
+            Action::LeavePast => self.leave_page(),
             Action::Play | Action::Step(_) => self.act_in_past(action),
             action if action.is_of_part() => press_key_of(action, ctx),
             action => self.act_on_screen(action),
@@ -75,19 +75,15 @@ impl ConsoleApp {
         self.settings.now.role = role;
         // A menu belongs to the view over which it was opened.
         egui::Popup::close_all(ctx);
-        if self.starting.is_none() {
-            self.close_pages();
+        match self.shown.past_mut() {
+            Some(past) => past.is_choosing = false,
+            None if self.starting.is_none() => self.leave_page(),
+            None => {}
         }
     }
 
-    fn close_pages(&mut self) {
-        self.start.is_open = false;
-        self.list.is_open = false;
-        self.hide_page();
-    }
-
     fn act_in_past(&mut self, action: Action) {
-        let Some(past) = &mut self.past else { return };
+        let Some(past) = self.shown.past_mut() else { return };
         match action {
             Action::Step(ms) => past.show(past.shown_s() + 1e-3 * f64::from(ms)),
             _ => past.toggle(),
@@ -133,7 +129,7 @@ impl ConsoleApp {
 
     /// Commands that change the views.
     fn act_on_view(&mut self, action: Action) {
-        let (live, panels) = match &mut self.past {
+        let (live, panels) = match self.shown.past_mut() {
             Some(past) => (past.live.as_deref(), &mut past.panels),
             None => (Some(&self.live), &mut self.panels),
         };

@@ -33,8 +33,8 @@ impl ConsoleApp {
     /// window in between.
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
-        let asks = self.wizards.open.is_some() || self.checking.is_open();
-        let plays = self.past.as_ref().is_some_and(Playback::moves) || self.panels.demo.moves();
+        let asks = self.shown.guides_a_person();
+        let plays = self.shown.past().is_some_and(Playback::moves) || self.panels.demo.moves();
         let devices = &self.panels.devices;
         if moves || plays || devices.is_testing() || asks || self.live.first_tick().is_none() {
             self.moved = Instant::now();
@@ -72,7 +72,7 @@ impl ConsoleApp {
     fn until_change(&self) -> Duration {
         let open = self.opened.elapsed();
         let ConsoleOptions { exit_after, screenshot, .. } = &self.options;
-        let wanted = [screenshot.as_ref().filter(|_| !self.shown).map(|_| self.image_at()), *exit_after];
+        let wanted = [screenshot.as_ref().filter(|_| !self.is_photographed).map(|_| self.image_at()), *exit_after];
         let wanted = wanted.into_iter().flatten().map(|at| at.saturating_sub(open));
         wanted.fold(BEAT_AT_REST.saturating_sub(self.taken.elapsed()), Duration::min).max(MIN_REST)
     }

@@ -6,11 +6,12 @@ mod checking;
 mod connecting;
 mod dispatch;
 mod frame_rate;
-mod listing;
 mod loop_start;
 mod opening;
 mod paging;
 mod playback_mode;
+mod setting_up;
+mod shown_page;
 mod starting;
 mod views;
 mod visible_state;
@@ -26,7 +27,7 @@ use eframe::glow;
 use egui::{Frame, Id, Margin, Panel, Ui, UiBuilder};
 use nima_machine::{config::RigConfig, messages::Command, rig::Side, runtime::LoopHandle};
 use nima_panels::{rig_choice::RigChoice, roles::Panels, settings::SettingsStore, tiles::PanelTiles};
-use nima_playback::{Playback, list::SessionList};
+use nima_playback::list::SessionList;
 use nima_screen::{
     alarms::judge,
     canvas::{Canvas, Surface, renderer_of},
@@ -67,9 +68,9 @@ use crate::{
     extras::{self, Extra},
 };
 use checking::CheckPage;
-use listing::Listing;
 use loop_start::door_of;
 pub(crate) use loop_start::{StartedLoop, start_recorded};
+use shown_page::{ShownPage, WayBack};
 use starting::StartingRig;
 
 /// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 frames per
@@ -111,12 +112,13 @@ pub struct ConsoleApp {
     photographer: Option<ScreenshotRun>,
     wizards: Wizards,
     checking: CheckPage,
-    listing: Listing,
+    /// The way back from a wizard or the check.
+    way_back: WayBack,
     list: SessionList,
     /// The page of an extra that may reserve the machine.
     page: Option<Box<dyn Page>>,
-    /// A recorded session that is shown instead of the machine.
-    past: Option<Playback>,
+    /// The content below the top bar.
+    shown: ShownPage,
     active: ActiveCalibrations,
     diary: RunLog,
     sessions: ConsoleSessions,
@@ -134,7 +136,8 @@ pub struct ConsoleApp {
     moved: Instant,
     /// Time at which the waiting ticks and events were last read.
     taken: Instant,
-    shown: bool,
+    /// The requested screenshot has been taken.
+    is_photographed: bool,
     /// Few frames are drawn, because nothing is engaged.
     calm: bool,
 }
@@ -172,10 +175,10 @@ impl ConsoleApp {
             sessions: ConsoleSessions::default(),
             wizards: Wizards::default(),
             checking: CheckPage::default(),
-            listing: Listing::default(),
+            way_back: WayBack::default(),
             list: SessionList::default(),
             page: extras::part(Extra::page).map(|page| page()),
-            past: None,
+            shown: ShownPage::default(),
             watched: None,
             read: None,
             live,
@@ -197,7 +200,7 @@ impl ConsoleApp {
             framed: now,
             moved: now,
             taken: now,
-            shown: false,
+            is_photographed: false,
             calm: false,
         }
     }
@@ -217,6 +220,7 @@ impl ConsoleApp {
         self.taken = Instant::now();
         let rate_hz = self.live.rig.rate_hz;
         let wizards = &mut self.wizards;
+        let wizard = self.shown.wizard();
         let active = &mut self.active;
         let diary = &mut self.diary;
         let eyes = &mut self.panels.eyes;
@@ -228,8 +232,8 @@ impl ConsoleApp {
                 check.take(news);
             }
             let LoopMessage::Tick(tick) = news else { return };
-            if tick.side == calibrated {
-                wizards.tick(tick, rate_hz);
+            if let Some(which) = wizard.filter(|_| tick.side == calibrated) {
+                wizards.tick(which, tick, rate_hz);
             }
             active.watch(tick);
             eyes.note(tick);
@@ -257,7 +261,7 @@ impl ConsoleApp {
             };
             self.top_bar.participant = self.run().map(|run| run.participant().to_owned());
             self.top_bar.asked = self.checking.ask();
-            self.top_bar.past = self.past.is_some();
+            self.top_bar.past = self.shown.is_past();
             self.top_bar.can_undo = [self.history.can_undo(), self.history.can_redo()];
             self.sessions.look_after();
             self.top_bar.recorded = self.sessions.shown();
@@ -280,7 +284,7 @@ impl ConsoleApp {
         // A separate id: an alarm that appears above must not end the drag of a slider.
         ui.scope_builder(UiBuilder::new().scope_id(Id::unique("page")), |ui| self.page_layout(ui));
         self.top_bar.alarms.list_ui(ui.ctx(), room);
-        self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
+        self.settings.now.toured |= self.help.ui(ui.ctx(), room, matches!(self.shown, ShownPage::Monitor));
         self.welcome(ui.ctx(), room);
         self.palette_ui(ui.ctx(), room);
     }
@@ -327,14 +331,14 @@ impl eframe::App for ConsoleApp {
         self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
         self.layout(ui);
         self.windows_layout(&ctx);
-        if !self.start.is_open {
+        if !matches!(self.shown, ShownPage::Start) {
             self.start.rest();
         }
         self.remember_look(&ctx);
         self.settings.now.units = PlotUnits::of(&ctx);
         self.settings.save();
         self.compute_shown();
-        if self.past.is_some() {
+        if self.shown.is_past() {
             self.outbox.only_stop();
         }
         if self.live.line.is_some() {
@@ -360,7 +364,7 @@ impl eframe::App for ConsoleApp {
         if let Some(tradeoff) = &self.panels.tradeoff {
             tradeoff.stop();
         }
-        self.leave_page();
+        self.break_off_run();
         self.write_figures();
         if let (Some(gl), Some(surface)) = (gl, &self.surface) {
             surface.destroy(gl);

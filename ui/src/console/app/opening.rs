@@ -11,10 +11,10 @@ use nima_screen::{
     stderr::print_line,
 };
 use nima_simulation::ObjectFeed;
-use nima_wizards::{Wizards, active_calibrations::ActiveCalibrations};
+use nima_wizards::{WizardKind, Wizards, active_calibrations::ActiveCalibrations};
 use nima_words::language;
 
-use super::{ConsoleApp, WARM_UP};
+use super::{ConsoleApp, WARM_UP, shown_page::ShownPage};
 use crate::console::{ConsoleOptions, screenshots::ScreenshotRun, sessions::ConsoleSessions};
 
 impl ConsoleApp {
@@ -33,8 +33,10 @@ impl ConsoleApp {
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
-        if let Some(session) = self.options.session.clone() {
-            self.open_past(&session);
+        match (self.options.session.clone(), self.options.signals.take()) {
+            (Some(recording), Some(signals)) => self.open_signals(&recording, &signals),
+            (Some(session), None) => self.open_past(&session),
+            (None, _) => {}
         }
         self.leave_when_asked();
         self
@@ -125,10 +127,11 @@ impl ConsoleApp {
         self
     }
 
-    /// Continues with these wizards and their data.
+    /// Shows this wizard, with the data of these wizards.
     #[must_use]
-    pub fn with_wizards(mut self, wizards: Wizards) -> Self {
+    pub fn with_wizards(mut self, which: WizardKind, wizards: Wizards) -> Self {
         self.wizards = wizards;
+        self.shown = ShownPage::Wizard(which);
         self
     }
 
@@ -136,8 +139,8 @@ impl ConsoleApp {
     pub(super) fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
         let ConsoleOptions { exit_after, screenshot, .. } = self.options.clone();
-        if let Some(path) = screenshot.filter(|_| !self.shown && open >= self.image_at()) {
-            self.shown = true;
+        if let Some(path) = screenshot.filter(|_| !self.is_photographed && open >= self.image_at()) {
+            self.is_photographed = true;
             ctx.request_screenshot(move |image| {
                 // By now, errors can be reported only on the terminal.
                 if let Err(error) = screenshot::save(&path, &image) {

@@ -8,9 +8,9 @@ use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_simulation::scene::Scene;
 use nima_words::{report_text::chain, text};
 
-use super::ConsoleApp;
+use super::{ConsoleApp, shown_page::ShownPage};
 use crate::console::{
-    page::{ClosedRun, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
+    page::{LeftPage, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
     start::is_real,
 };
 
@@ -28,18 +28,8 @@ impl ConsoleApp {
         self.page.as_ref().is_some_and(|page| page.holds_machine())
     }
 
-    pub(super) fn is_page_shown(&self) -> bool {
-        self.page.as_ref().is_some_and(|page| page.is_shown())
-    }
-
-    pub(super) fn hide_page(&mut self) {
-        if let Some(page) = &mut self.page {
-            page.hide();
-        }
-    }
-
     pub(super) fn toggle_page(&mut self) {
-        if self.is_page_shown() { self.hide_page() } else { self.open_page() }
+        if matches!(self.shown, ShownPage::OfExtra) { self.leave_page() } else { self.open_page() }
     }
 
     /// Shows the page. First ends everything that the screen does to the machine automatically: a demonstration, or mouse
@@ -48,9 +38,8 @@ impl ConsoleApp {
         let Some(page) = &mut self.page else { return };
         self.panels.demo.leave(&mut self.outbox);
         self.panels.scene.let_go(&mut self.outbox);
-        self.start.is_open = false;
-        self.list.is_open = false;
-        page.show(self.settings.folder(), &self.settings.now.studies);
+        page.read(self.settings.folder(), &self.settings.now.studies);
+        self.shown = ShownPage::OfExtra;
     }
 
     pub(super) fn page_of_extra_layout(&mut self, ui: &mut Ui) {
@@ -67,12 +56,16 @@ impl ConsoleApp {
             is_over_a_line: self.reopen.is_some(),
             is_starting: self.starting.is_some(),
         };
-        let closed = self.page.as_mut().and_then(|page| page.ui(ui, room));
+        let left = self.page.as_mut().and_then(|page| page.ui(ui, room));
         self.sessions.rest(self.is_held());
-        // The previous rig runs again.
-        if let Some(ClosedRun(Some(before))) = closed {
-            let now = self.running.clone();
-            self.begin(before, Some(now), None);
+        match left {
+            None | Some(LeftPage::Machine(None)) => {}
+            Some(LeftPage::Page) => self.leave_page(),
+            // The previous rig runs again.
+            Some(LeftPage::Machine(Some(before))) => {
+                let now = self.running.clone();
+                self.begin(before, Some(now), None);
+            }
         }
     }
 
@@ -121,6 +114,7 @@ impl ConsoleApp {
         let Some(page) = &mut self.page else { return Ok(()) };
         let PreparedRun { rig, scene, is_by_mouse } = page.prepare()?;
         self.panels.scene.be_of_participant(true, is_by_mouse);
+        self.shown = ShownPage::OfExtra;
         self.clear_for_trial();
         // End the old loop first: a rig must have only one controller.
         drop(self.door.take());
@@ -161,7 +155,7 @@ impl ConsoleApp {
     }
 
     /// When the window closes, an unfinished run is recorded as aborted.
-    pub(super) fn leave_page(&mut self) {
+    pub(super) fn break_off_run(&mut self) {
         if self.in_trial() {
             self.break_off(RunBreak::Closed);
             self.end_run(false);

@@ -11,13 +11,16 @@ use egui::{Key, Modifiers, Ui};
 use nima_machine::config::RigConfig;
 use nima_panels::{rig_choice::RigChoice, roles::Role};
 use nima_simulation::scene::Scene;
-use nima_words::{report_text::chain, text};
+use nima_words::{
+    report_text::chain,
+    text::{self, of_files::of_file},
+};
 
-use super::ConsoleApp;
+use super::{ConsoleApp, shown_page::ShownPage};
 use crate::{
     console::{
         reader::ScreenReader,
-        start::{StartInputs, WelcomeChoice, drawn_anew},
+        start::{StartInputs, StartRequest, WelcomeChoice, drawn_anew},
     },
     emulators::Emulators,
 };
@@ -92,8 +95,7 @@ impl ConsoleApp {
 
     /// Shows a window over a view in which a new user can choose the running rig, the demonstration, or their own rig.
     pub(super) fn welcome(&mut self, ctx: &egui::Context, room: egui::Rect) {
-        let covers = self.start.is_open || self.list.is_open || self.past.is_some() || self.is_held();
-        if covers || self.wizards.open.is_some() || self.checking.is_open() {
+        if !matches!(self.shown, ShownPage::Monitor) {
             return;
         }
         // A user who asks for a view knows the program.
@@ -127,9 +129,7 @@ impl ConsoleApp {
     }
 
     pub(super) fn open_start(&mut self) {
-        // A user who opens this page needs no welcome, and the welcome describes the rig that ran before.
-        self.start.welcome.close();
-        self.list.is_open = false;
+        self.shown = ShownPage::Start;
         self.start.open(&self.running, &self.settings.now.recent);
     }
 
@@ -142,15 +142,16 @@ impl ConsoleApp {
             image: self.panels.eyes.report(),
             page: self.page.as_ref().map(|page| page.name()),
         };
-        let chosen = self.start.ui(ui, &now);
-        if std::mem::take(&mut self.start.wants_page) {
-            self.open_page();
-        }
-        if let Some(choice) = chosen
-            && !self.outbox.holds_stop()
-        {
-            let before = self.running.clone();
-            self.begin(choice, Some(before), None);
+        match self.start.ui(ui, &now) {
+            Some(StartRequest::Start(choice)) if !self.outbox.holds_stop() => {
+                let before = self.running.clone();
+                // The welcome describes the rig that ran before.
+                self.start.welcome.close();
+                self.begin(choice, Some(before), None);
+            }
+            Some(StartRequest::Start(_)) | None => {}
+            Some(StartRequest::Page) => self.open_page(),
+            Some(StartRequest::Leave) => self.leave_page(),
         }
     }
 
@@ -234,13 +235,18 @@ impl ConsoleApp {
                 }
                 self.forget_what_was_taken();
                 self.watched = None;
-                self.start.is_open = because.is_some();
-                self.start.notify(because.map(|cause| text::start::not_started(&cause, Some(&self.live.rig.name))));
+                if because.is_some() {
+                    self.shown = ShownPage::Start;
+                } else if matches!(self.shown, ShownPage::Start) {
+                    self.leave_page();
+                }
+                self.start
+                    .notify(because.map(|cause| text::start::not_started(&cause, Some(of_file(&self.live.rig.name)))));
                 self.running = choice;
             }
             (Err(cause), Some(before)) => self.begin(before, None, Some(cause)),
             (Err(cause), None) => {
-                self.start.is_open = true;
+                self.shown = ShownPage::Start;
                 self.start.notify(Some(text::start::not_started(&because.unwrap_or(cause), None)));
             }
         }

@@ -3,24 +3,24 @@
 use egui::Ui;
 use nima_panels::roles::{Wishes, role_ui};
 
-use super::{ConsoleApp, availability::ActivePage};
+use super::{ConsoleApp, shown_page::ShownPage};
 
 impl ConsoleApp {
     pub(super) fn page_layout(&mut self, ui: &mut Ui) {
         self.panels.scene.is_seen = false;
-        if let Some(past) = &mut self.past {
+        if let Some(past) = self.shown.past_mut() {
             past.panels.scene.is_seen = false;
         }
-        match self.page() {
-            ActivePage::Trial => self.trial_layout(ui),
-            ActivePage::Past => self.past_layout(ui),
-            ActivePage::List => self.list_layout(ui),
-            ActivePage::Check => self.check_layout(ui),
-            ActivePage::Listing => self.listing_layout(ui),
-            ActivePage::Wizard => self.wizard_layout(ui),
-            ActivePage::Start => self.start_layout(ui),
-            ActivePage::OfExtra => self.page_of_extra_layout(ui),
-            ActivePage::Monitor => self.monitor_layout(ui),
+        match self.shown {
+            ShownPage::Past(_) => self.past_layout(ui),
+            ShownPage::Sessions => self.list_layout(ui),
+            ShownPage::Check(_) => self.check_layout(ui),
+            ShownPage::Setup(_) => self.setup_layout(ui),
+            ShownPage::Wizard(which) => self.wizard_layout(ui, which),
+            ShownPage::Start => self.start_layout(ui),
+            ShownPage::OfExtra if self.in_trial() => self.trial_layout(ui),
+            ShownPage::OfExtra => self.page_of_extra_layout(ui),
+            ShownPage::Monitor => self.monitor_layout(ui),
         }
     }
 
@@ -28,7 +28,7 @@ impl ConsoleApp {
     pub(super) fn compute_shown(&mut self) {
         let is_seen = std::mem::take(&mut self.panels.degrees.is_seen);
         // During playback, or with a stop, the command would be dropped.
-        if self.past.is_none() && !self.outbox.holds_stop() {
+        if !self.shown.is_past() && !self.outbox.holds_stop() {
             let runs = self.live.state().permits().drives;
             let shows = is_seen && runs && self.live.compare_cost.has_waited();
             self.outbox.show_all_modes(shows, &self.live);

@@ -10,7 +10,7 @@ use nima_panels::{
 use nima_screen::{live::LiveState, theme, widgets::weak};
 use nima_words::text;
 
-use super::{ConsoleApp, availability::ActivePage};
+use super::{ConsoleApp, shown_page::ShownPage};
 use crate::console::{
     keys,
     top_bar::{state_ui, stop_button_ui},
@@ -40,7 +40,7 @@ impl ConsoleApp {
                 self.settings.now.layout.toggle_window(panel);
             }
         }
-        if self.page() == ActivePage::Monitor {
+        if matches!(self.shown, ShownPage::Monitor) {
             self.obey_wishes(wishes);
         }
     }
@@ -48,17 +48,21 @@ impl ConsoleApp {
     fn window_layout(&mut self, ui: &mut Ui, panel: PanelId, head: &mut WindowHead, wishes: &mut Wishes) {
         head.stops |= keys::stop_pressed(ui.ctx());
         head_ui(ui, &self.live, head);
-        let page = self.page();
-        let is_locked = !matches!(page, ActivePage::Monitor | ActivePage::Past);
+        let is_monitor = matches!(self.shown, ShownPage::Monitor);
+        let is_locked = !(is_monitor || self.shown.is_past());
         if is_locked {
             ui.label(weak(text::tiles::LOCKED));
         }
         // A view and the window would share one camera.
-        if panel == PanelId::Field && page == ActivePage::Monitor && self.role() != Role::Technician {
+        if panel == PanelId::Field && is_monitor && self.role() != Role::Technician {
             ui.label(weak(text::tiles::FIELD_IN_VIEW));
             return;
         }
-        let (live, panels, active, outbox) = match &mut self.past {
+        let (live, panels, active, outbox) = match self.shown.past_mut() {
+            Some(past) if past.is_foreign() => {
+                ui.label(weak(text::playback::ONLY_SESSIONS));
+                return;
+            }
             None => (&mut self.live, &mut self.panels, &self.active, &mut self.outbox),
             Some(past) => {
                 let Some(live) = &mut past.live else { return };
@@ -69,7 +73,7 @@ impl ConsoleApp {
         let mut at = PanelContext { live, panels, active, outbox, wishes, is_locked };
         content_ui(ui, panel, &mut |ui| all.ui(ui, panel, &mut at));
         panels.all = all;
-        if let Some(past) = &mut self.past {
+        if let Some(past) = self.shown.past_mut() {
             past.outbox.forget();
         }
     }

@@ -115,6 +115,10 @@ fn unusable(key: String, error: &dyn std::error::Error, own: bool) -> ChoiceEntr
 #[cfg(test)]
 mod tests {
     use nima_machine::config::RigFile;
+    use nima_words::{
+        language::{self, Language},
+        text::of_files::of_file,
+    };
 
     use super::*;
 
@@ -140,6 +144,20 @@ mod tests {
         let chosen = RigChoice { scene: "palpation".to_owned(), ..first };
         assert_eq!(chosen.with_rig("emulated").scene, "palpation");
         assert_eq!(chosen.with_rig("paper").scene, "bimanual", "no scene is chosen for a real arm");
+    }
+
+    #[test]
+    fn built_in_rigs_and_scenes_are_named_in_the_language_of_the_window() {
+        let lists = Lists::read(None, &[]);
+        let rigs = lists.rigs.iter().map(|entry| &entry.name);
+        let words = rigs.chain(lists.scenes.iter().flat_map(|entry| [&entry.name, &entry.about]));
+        let missing: Vec<_> = words.filter(|words| in_german(words) == **words).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+        assert_eq!(in_german("Knee of Ada"), "Knee of Ada", "a name given by a user stays");
+    }
+
+    fn in_german(words: &str) -> String {
+        language::with(Language::German, || of_file(words).to_owned())
     }
 
     #[test]

@@ -14,7 +14,7 @@ use nima_panels::endoscope_view::fault_text;
 use nima_screen::{double_buffer::DoubleBuffer, widgets::small};
 use nima_words::{report_text::chain, text};
 
-use super::{answer_ui, trouble_ui};
+use super::devices::{answer_ui, trouble_ui};
 
 /// Delay between the last key press and the test of an address.
 const TYPED: Duration = Duration::from_millis(500);

@@ -2,6 +2,7 @@
 
 mod addresses;
 mod choices;
+mod devices;
 mod endoscope;
 mod looking;
 mod making;
@@ -10,16 +11,15 @@ mod welcome;
 use std::path::{Path, PathBuf};
 
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
-use nima_devices::discovery::{DiscoveryDiagnosis, FoundDevice, PluggedDevices, TestOutcome};
 use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_panels::rig_choice::RigChoice;
 use nima_screen::{
     live::LiveState,
     picking::Picking,
     theme,
-    widgets::{Sign, card, next_button, sign_ui, small, weak},
+    widgets::{card, next_button, small, weak},
 };
-use nima_words::text;
+use nima_words::text::{self, of_files::of_file};
 
 use addresses::ExampleAddresses;
 pub(crate) use choices::drawn_anew;
@@ -34,9 +34,6 @@ const ROW: f32 = 40.0;
 
 #[derive(Debug)]
 pub struct StartPage {
-    pub(super) is_open: bool,
-    /// The page of an extra is requested.
-    pub(super) wants_page: bool,
     /// The page for newcomers.
     pub(super) welcome: Welcome,
     chosen: RigChoice,
@@ -53,6 +50,15 @@ pub struct StartPage {
     /// The chosen rig's file may have changed.
     is_stale: bool,
     picking: Option<Picking>,
+}
+
+/// The user's request on the page.
+#[derive(Debug)]
+pub(super) enum StartRequest {
+    Start(RigChoice),
+    /// Show the page of an extra.
+    Page,
+    Leave,
 }
 
 /// Input for drawing the page.
@@ -72,8 +78,6 @@ pub(super) struct StartInputs<'a> {
 impl StartPage {
     pub(super) fn new(chosen: RigChoice) -> Self {
         Self {
-            is_open: false,
-            wants_page: false,
             welcome: Welcome::default(),
             chosen,
             folder: None,
@@ -90,9 +94,8 @@ impl StartPage {
         }
     }
 
-    /// Shows the page and reads everything again; the running rig is selected.
+    /// Reads everything again for the page; the running rig is selected.
     pub(super) fn open(&mut self, running: &RigChoice, recent: &[RigChoice]) {
-        self.is_open = true;
         self.report = None;
         self.is_stale = true;
         self.read(running, recent);
@@ -128,9 +131,9 @@ impl StartPage {
         self.chosen = choice;
     }
 
-    /// Draws the page; returns the choice to start.
-    pub(super) fn ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
-        let mut start = None;
+    /// Draws the page; returns the user's request.
+    pub(super) fn ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<StartRequest> {
+        let mut request = None;
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 8));
         CentralPanel::default().frame(frame).show(ui, |ui| {
             let height = ui.available_height() - 66.0;
@@ -142,12 +145,14 @@ impl StartPage {
                 column(ui, "devices", vec2(width, height), |ui| self.devices_ui(ui, now));
             });
             ui.add_space(6.0);
-            start = self.foot_ui(ui, now);
+            request = self.foot_ui(ui, now);
         });
-        start
+        request
     }
 
-    fn elsewhere_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
+    /// Returns whether the page of an extra is requested.
+    fn elsewhere_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> bool {
+        let mut wants_page = false;
         // Place the buttons at the right edge, below the shortest column.
         let corner = ui.max_rect().right_top() - vec2(theme::STOP_SIZE.x, 0.0);
         let place = egui::Rect::from_min_size(corner, theme::STOP_SIZE);
@@ -155,7 +160,7 @@ impl StartPage {
             let place = place.translate(vec2(-theme::STOP_SIZE.x - theme::GAP, 0.0));
             let page = Button::new(name).wrap();
             let page = ui.add_enabled_ui(!now.is_starting, |ui| ui.put(place, page)).inner;
-            self.wants_page |= page.on_hover_text(meaning).clicked();
+            wants_page = page.on_hover_text(meaning).clicked();
         }
         let button = Button::new(text::start::ELSEWHERE);
         let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
@@ -164,6 +169,7 @@ impl StartPage {
             let folder = self.folder.as_deref();
             self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
         }
+        wants_page
     }
 
     fn rigs_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
@@ -249,83 +255,13 @@ impl StartPage {
         });
     }
 
-    fn devices_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
-        card(ui, text::start::MISSING, text::start::MISSING_HOVER, |ui| self.missing_ui(ui, now));
-        card(ui, text::start::ENDOSCOPE, text::start::ENDOSCOPE_HOVER, |ui| self.endoscope_ui(ui, now));
-        card(ui, text::start::PLUGGED, text::start::PLUGGED_HOVER, |ui| {
-            let ctx = ui.ctx().clone();
-            if let Some(plugged) = self.plugged.now(&ctx) {
-                plugged_ui(ui, plugged);
-            }
-        });
-    }
-
-    fn endoscope_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
-        let runs = now.live.rig.endoscope.as_ref().zip(now.image.as_ref());
-        let running = runs.map(|(endoscope, report)| (endoscope.url.as_str(), report));
-        if !self.endoscope.ui(ui, running) {
-            return;
-        }
-        match self.endoscope.write(&self.chosen.rig, self.folder.as_deref()) {
-            Ok(rig) => {
-                self.report = Some(text::start::endoscope_written(&rig));
-                self.read(now.running, now.recent);
-                self.is_stale = true;
-                self.choose(RigChoice { rig, ..self.chosen.clone() });
-            }
-            Err(report) => self.report = Some(report),
-        }
-    }
-
     /// Call while the page is not shown.
     pub(super) fn rest(&mut self) {
         self.endoscope.close();
     }
 
-    /// Draws the missing devices: for the running rig, from its list of devices; devices of another rig are opened
-    /// briefly.
-    fn missing_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) {
-        let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
-            ui.label(text::start::SIMULATED);
-            return;
-        };
-        if self.chosen.rig == now.running.rig {
-            let missing: Vec<_> = now.live.missing().collect();
-            if missing.is_empty() {
-                answer_ui(ui, true, text::start::ALL_THERE.get());
-            }
-            for one in missing {
-                trouble_ui(ui, &one.name, &one.cause, &one.cure);
-            }
-            return;
-        }
-        if rig.is_harmless() {
-            ui.label(text::start::EMULATED);
-            return;
-        }
-        if self.addresses.ui(ui, &self.chosen.rig, rig) {
-            self.is_stale = true;
-            return self.choose(self.chosen.clone());
-        }
-        let checking = self.answers.is_running();
-        let button = Button::new(if checking { text::start::CHECKING.get() } else { text::start::CHECK.get() });
-        let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
-        if button.on_hover_text(text::start::CHECK_HOVER).clicked() {
-            let ctx = ui.ctx().clone();
-            looking::check(&mut self.answers, &ctx, rig);
-        }
-        for DiscoveryDiagnosis { name, outcome, .. } in self.answers.found().into_iter().flatten() {
-            match outcome {
-                TestOutcome::Connected(FoundDevice { identity, .. }) => {
-                    answer_ui(ui, true, &text::start::answers(name, &identity.product, &identity.serial));
-                }
-                TestOutcome::Trouble { cause, cure, .. } => trouble_ui(ui, name, cause, cure),
-            }
-        }
-    }
-
-    fn foot_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<RigChoice> {
-        let mut start = None;
+    fn foot_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<StartRequest> {
+        let mut request = None;
         ui.horizontal(|ui| {
             let held = now.live.state() == LoopState::Engaged && is_real(&now.live.rig);
             let same = self.chosen == *now.running;
@@ -336,11 +272,11 @@ impl StartPage {
             let button = next_button(name, !same).min_size(theme::STOP_SIZE);
             let button = ui.add_enabled(ready && !held && !now.is_starting, button);
             if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
-                start = Some(self.chosen.clone());
+                request = Some(StartRequest::Start(self.chosen.clone()));
             }
             let back = Button::new(text::start::BACK).min_size(theme::STOP_SIZE);
             if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER).clicked() {
-                self.is_open = false;
+                request = Some(StartRequest::Leave);
             }
             ui.vertical(|ui| {
                 ui.label(RichText::new(self.words_of(&self.chosen)).font(theme::strong(15.0)));
@@ -351,9 +287,11 @@ impl StartPage {
                     ui.add(Label::new(report).wrap());
                 }
             });
-            self.elsewhere_ui(ui, now);
+            if self.elsewhere_ui(ui, now) {
+                request = Some(StartRequest::Page);
+            }
         });
-        start
+        request
     }
 }
 
@@ -363,7 +301,7 @@ pub(super) fn is_real(rig: &RigConfig) -> bool {
 }
 
 fn name_in<'a>(list: &'a [ChoiceEntry], key: &'a str) -> &'a str {
-    list.iter().find(|entry| entry.key == key).map_or(key, |entry| &entry.name)
+    list.iter().find(|entry| entry.key == key).map_or(key, |entry| of_file(&entry.name))
 }
 
 fn column(ui: &mut Ui, name: &str, size: egui::Vec2, content: impl FnOnce(&mut Ui)) {
@@ -382,35 +320,10 @@ fn row_ui(ui: &mut Ui, chosen: bool, usable: bool, name: &str, about: &str) -> e
 }
 
 fn entry_ui(ui: &mut Ui, entry: &ChoiceEntry, chosen: bool, running: bool) -> bool {
-    let clicked = row_ui(ui, chosen, entry.usable, &entry.name, &entry.key).clicked();
-    let words = if running { format!("{}. {}", text::start::RUNNING.get(), entry.about) } else { entry.about.clone() };
+    let clicked = row_ui(ui, chosen, entry.usable, of_file(&entry.name), &entry.key).clicked();
+    let about = of_file(&entry.about);
+    let words = if running { format!("{}. {about}", text::start::RUNNING.get()) } else { about.to_owned() };
     ui.add(Label::new(small(words)).wrap());
     ui.add_space(4.0);
     clicked
-}
-
-fn answer_ui(ui: &mut Ui, good: bool, words: &str) {
-    let (what, colour) =
-        if good { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().alarm_medium) };
-    ui.horizontal(|ui| {
-        sign_ui(ui, what, 5.0, colour);
-        ui.add(Label::new(RichText::new(words).font(theme::strong(14.0))).wrap());
-    });
-}
-
-fn trouble_ui(ui: &mut Ui, name: &str, cause: &str, cure: &str) {
-    answer_ui(ui, false, name);
-    ui.add(Label::new(cause).wrap());
-    ui.add(Label::new(small(cure)).wrap());
-}
-
-fn plugged_ui(ui: &mut Ui, plugged: &PluggedDevices) {
-    let lines = plugged.lines();
-    if lines.is_empty() {
-        ui.label(weak(text::start::NOTHING_PLUGGED));
-    }
-    for [place, used, ids] in lines {
-        ui.label(RichText::new(used).font(theme::strong(14.0)));
-        ui.add(Label::new(small(format!("{place}, {ids}"))).wrap());
-    }
 }

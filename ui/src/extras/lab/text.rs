@@ -55,13 +55,10 @@ pub(super) const APPLIED_BY_RESTART: Text = Text::of(
 );
 pub(super) const STABLE_GAIN_UNKNOWN: Text = Text::of(
     "Highest stable gain: known after the first contact",
-    "Höchste stabile Verstärkung: nach dem ersten Kontakt bekannt",
+    "Stabile Verstärkung: nach dem ersten Kontakt bekannt",
 );
-pub(super) const STABLE_GAIN_UNMEASURED: Text = Text::of(
-    "Highest stable gain: not measured in this mode",
-    "Höchste stabile Verstärkung: in diesem Modus nicht \
-     gemessen",
-);
+pub(super) const STABLE_GAIN_UNMEASURED: Text =
+    Text::of("Highest stable gain: not measured in this mode", "Stabile Verstärkung: in diesem Modus nicht gemessen");
 pub(super) const STABLE_GAIN_HOVER: Text = Text::of(
     "From simulations of a gripping hand that is pushed aside and must come to rest again, for the current mode \
      and delay and the stiffness of the current contact (N/m; between contacts, of the last one). Force is kept \
@@ -117,6 +114,6 @@ pub(super) fn stable_up_to(verdict: StabilityMapVerdict, greatest: f64, stiffnes
     };
     text_format!(
         "This gain is {verdict}; stable up to {greatest:.2} at {stiffness_n_m:.0} N/m",
-        "Diese Verstärkung ist {verdict}; stabil bis {greatest:.2} bei {stiffness_n_m:.0} N/m"
+        "Jetzt {verdict}; stabil bis {greatest:.2} bei {stiffness_n_m:.0} N/m"
     )
 }

@@ -18,9 +18,9 @@ use nima_calibrations::frames::{FrameKind, kind::Texts};
 use super::FrameWizard;
 use crate::{
     checks::{check_line, switch_ui},
-    drawings::progress,
+    drawings::{POSE_HEIGHT, progress},
     frame::Wizard as _,
-    guide::beside,
+    guide::{SIZE, beside},
 };
 
 impl FrameWizard {
@@ -86,6 +86,7 @@ impl FrameWizard {
                 FrameKind::asks(&self.prompt(), self.target().name)
             };
             let drawn = if complete { Prompt::Rest } else { self.drawn() };
+            let top = ui.cursor().top();
             beside(ui, &drawn, self.held().as_ref(), |ui| {
                 ui.label(RichText::new(asked).font(theme::strong(19.0)));
                 if !complete {
@@ -97,6 +98,11 @@ impl FrameWizard {
                     ui.add_space(4.0);
                 }
             });
+            if complete {
+                // The room of the drawing stays, so that the buttons below do not move.
+                let height = if self.kind == FrameKind::Mount { POSE_HEIGHT } else { SIZE.y };
+                ui.add_space((height + top - ui.cursor().top()).max(0.0));
+            }
             let words = texts::coverage(self.taken(), units, coverage.missing.map(report_text::ShortText::words));
             progress(ui, texts::COVERAGE.get(), coverage.fraction, &words);
             ui.add_space(6.0);

@@ -17,12 +17,14 @@ use nima_recording::store::ReadyRecord;
 
 use super::{
     ArmOverview, following,
-    tiles::{SetupStep, SetupTile, StepState, tiles},
+    tiles::{SetupStep, SetupTile, StepState, progress_text, tiles},
 };
-use crate::GoOn;
+use crate::{GoOn, arm_chip};
 
 /// Smallest width of a tile, and its height.
 const TILE: egui::Vec2 = vec2(216.0, 92.0);
+/// Lines of a reason that a tile has room for.
+const LINES: usize = 3;
 /// Width of the coloured edge of a tile.
 const EDGE: f32 = 5.0;
 
@@ -40,15 +42,22 @@ pub fn overview_ui(
     if arms.is_empty() {
         ui.label(text::calibrations::NOT_NEEDED);
     }
+    let arms_tiles: Vec<Vec<SetupTile>> = arms.iter().map(|arm| tiles(arm, live, check)).collect();
     let mut wish = following_ui(ui, arms, closed);
-    for arm in arms {
-        let name = side_name(arm.side);
+    if !arms.is_empty() {
+        ui.label(RichText::new(progress_text(&arms_tiles)).font(theme::strong(15.0)));
+        ui.add_space(theme::GAP);
+    }
+    for (arm, tiles) in arms.iter().zip(&arms_tiles) {
         let head = arm.wrist.as_ref().map_or_else(
-            || text::overview::of_unknown(name, text::calibrations::SENSOR_NOT_CONNECTED.get()),
-            |wrist| text::overview::of_arm(name, &wrist.serial_number, &wrist.tool),
+            || text::calibrations::SENSOR_NOT_CONNECTED.get().to_owned(),
+            |wrist| text::overview::of_arm(&wrist.serial_number, &wrist.tool),
         );
-        ui.label(RichText::new(head).font(theme::strong(theme::HEADING)));
-        wish = tiles_ui(ui, name, &tiles(arm, live, check), closed(arm.side)).or(wish);
+        ui.horizontal(|ui| {
+            arm_chip(ui, arm.side);
+            ui.label(RichText::new(head).font(theme::strong(theme::HEADING)));
+        });
+        wish = tiles_ui(ui, side_name(arm.side), tiles, closed(arm.side)).or(wish);
         ui.add_space(theme::GAP);
     }
     wish
@@ -132,10 +141,14 @@ fn content_ui(ui: &mut Ui, tile: &SetupTile, verb: &str, button: &Response) {
     place.spacing_mut().item_spacing.y = 2.0;
     place.add(Label::new(RichText::new(tile.name).font(theme::strong(14.0))).truncate());
     let lines: Vec<&str> = tile.why.lines().collect();
-    for line in &lines {
+    let shown = if lines.len() > LINES { LINES - 1 } else { lines.len() };
+    for line in &lines[..shown] {
         // A short reason has room for two lines; of a long one each line is cut, and the hover text has the rest.
         let label = Label::new(small(*line));
-        place.add(if lines.len() < 3 { label.wrap() } else { label.truncate() });
+        place.add(if lines.len() < LINES { label.wrap() } else { label.truncate() });
+    }
+    if shown < lines.len() {
+        place.add(Label::new(small(text::overview::more(lines.len() - shown))).truncate());
     }
     let ink = if button.enabled() { theme::now().text } else { theme::now().text_weak };
     ui.painter().text(inside.right_bottom(), egui::Align2::RIGHT_BOTTOM, verb, theme::strong(12.5), ink);

@@ -7,7 +7,8 @@ use nima_screen::live::LiveState;
 use nima_words::text;
 
 use nima_calibrations::{
-    CalibrationTarget,
+    CalibrationTarget, WizardKind,
+    frames::FrameKind,
     overview::{ArmOverview, CalibrationEntry, OverviewLine, day, made_text, verdict_text},
 };
 
@@ -42,6 +43,45 @@ pub(super) struct SetupTile {
 pub(super) fn tiles(arm: &ArmOverview, live: &LiveState, check: Option<&ReadyRecord>) -> Vec<SetupTile> {
     let calibrations = arm.lines.iter().map(calibration);
     std::iter::once(devices(arm.side, live)).chain(calibrations).chain([ready(live, check)]).collect()
+}
+
+/// Returns how much of the set-up is done, and the least time of the rest.
+pub(super) fn progress_text(arms: &[Vec<SetupTile>]) -> String {
+    let mut done = 0;
+    let mut all = 0;
+    let mut left_s = 0;
+    for (place, tiles) in arms.iter().enumerate() {
+        // Both arms share the ready check.
+        for tile in tiles.iter().filter(|tile| place == 0 || tile.step != SetupStep::Check) {
+            all += 1;
+            if tile.state == StepState::Done {
+                done += 1;
+            } else {
+                left_s += seconds(tile.step);
+            }
+        }
+    }
+    text::overview::progress(done, all, left_s.div_ceil(60))
+}
+
+/// Returns the time of a step if nothing has to be repeated, s: measured with the technician of the emulated rig
+/// (`docs/results/calibration.md`, `docs/results/frames.md`, `docs/results/ready-check.md`).
+const fn seconds(step: SetupStep) -> u64 {
+    match step {
+        SetupStep::Devices => 0,
+        SetupStep::Check => 26,
+        SetupStep::Calibrate(wanted) => match wanted.which {
+            WizardKind::Frame(FrameKind::Mount) => 60,
+            WizardKind::Frame(FrameKind::Tip | FrameKind::HandEye) => 40,
+            WizardKind::Frame(FrameKind::Table) => 30,
+            WizardKind::Frame(FrameKind::View) => 15,
+            WizardKind::Frame(FrameKind::Trocar) | WizardKind::Correspondence => 12,
+            WizardKind::Gravity => 42,
+            WizardKind::TipForce => 147,
+            // It has no tile.
+            WizardKind::Camera => 0,
+        },
+    }
 }
 
 /// Returns the devices of this arm, and those that both arms share.
@@ -96,4 +136,22 @@ fn ready(live: &LiveState, check: Option<&ReadyRecord>) -> SetupTile {
         None => (StepState::Doubtful, text::overview::NEVER_CHECKED.get().to_owned()),
     };
     SetupTile { name: text::overview::READY_TILE.get(), state, why, step: SetupStep::Check }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_progress_counts_what_is_done_and_the_time_of_the_rest() {
+        let tile = |which: WizardKind, state: StepState| {
+            let step = SetupStep::Calibrate(CalibrationTarget { side: Side::Right, which, by_handle: false });
+            SetupTile { name: "", state, why: String::new(), step }
+        };
+        let gravity = tile(WizardKind::Gravity, StepState::Done);
+        let tip_force = tile(WizardKind::TipForce, StepState::Doubtful);
+        let half = progress_text(&[vec![gravity.clone(), tip_force]]);
+        assert_eq!(half, "1 of 2 done, at least 3 min left");
+        assert_eq!(progress_text(&[vec![gravity]]), "1 of 1 done");
+    }
 }

@@ -16,13 +16,13 @@ use std::sync::Arc;
 use egui::Ui;
 use job::{CheckResult, SharedLosses, TrainingJob, TrainingOrder, judge, look, train};
 use nima_core::{
-    calibration::{Verdict, correspondence::Correspondence},
+    calibration::Verdict,
     tip_force::{ForceModel, Goal, GoalKind, TrainingSettings},
 };
 use nima_machine::{messages::Tick, rig::Prompt};
 use nima_screen::theme;
 use nima_words::text;
-use take::{RecordingClock, TipForceRecording};
+use take::{RecordedWith, RecordingClock, TipForceRecording};
 
 use super::{
     Binding, SaveRequest,
@@ -53,30 +53,6 @@ const CHECK_ROWS: usize = CHECK_WORK + 2000;
 
 /// Rows that a technician without a screen records: 80 s.
 const ENOUGH_ROWS: usize = 16_000;
-
-/// Origin of a recording: rows of different rigs must not be mixed.
-#[derive(Clone, Debug)]
-struct RecordedWith {
-    sensor: String,
-    tool: String,
-    correspondence: Correspondence,
-}
-
-impl RecordedWith {
-    /// Returns whether it is the same rig, as far as known: a sensor that is lost briefly may come back as the same
-    /// one.
-    fn fits(&self, binding: &Binding) -> bool {
-        if binding.sensor.is_empty() {
-            return true;
-        }
-        let same = |now: &Correspondence| {
-            let then = &self.correspondence;
-            let turned_rad = now.rotation.angle_to(&then.rotation);
-            now.target == then.target && now.flip_s2 == then.flip_s2 && turned_rad < 1e-6
-        };
-        self.sensor == binding.sensor && self.tool == binding.tool && binding.correspondence.as_ref().is_none_or(same)
-    }
-}
 
 impl CheckResult {
     fn as_text(&self) -> String {

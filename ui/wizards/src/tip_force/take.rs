@@ -5,6 +5,8 @@ use nima_machine::{messages::Tick, rig::Prompt};
 use nima_recording::tip_force::{MAX_ROWS, RecorderPhase, TipForceRecorder};
 use nima_words::{report_text::ShortText as _, text};
 
+use crate::Binding;
+
 /// A gap in the ticks longer than this, s, means that the rig was not observed during the gap.
 const HOLE_S: f64 = 1.0;
 
@@ -27,6 +29,30 @@ impl RecordingClock {
         self.begin_s = now_s - t_s;
         self.last_s = Some(now_s);
         (now_s, true)
+    }
+}
+
+/// Origin of a recording: rows of different rigs must not be mixed.
+#[derive(Clone, Debug)]
+pub(super) struct RecordedWith {
+    pub(super) sensor: String,
+    pub(super) tool: String,
+    pub(super) correspondence: Correspondence,
+}
+
+impl RecordedWith {
+    /// Returns whether it is the same rig, as far as known: a sensor that is lost briefly may come back as the same
+    /// one.
+    pub(super) fn fits(&self, binding: &Binding) -> bool {
+        if binding.sensor.is_empty() {
+            return true;
+        }
+        let same = |now: &Correspondence| {
+            let then = &self.correspondence;
+            let turned_rad = now.rotation.angle_to(&then.rotation);
+            now.target == then.target && now.flip_s2 == then.flip_s2 && turned_rad < 1e-6
+        };
+        self.sensor == binding.sensor && self.tool == binding.tool && binding.correspondence.as_ref().is_none_or(same)
     }
 }
 

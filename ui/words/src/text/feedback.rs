@@ -52,7 +52,7 @@ pub const HOLD_HOVER: Text = Text::of(
     "Ein: die Kraft bleibt, wenn die Hand anhält; ein stetiger Druck ist spürbar. Aus: sie blendet im Totband aus wie \
      im Artikel, und das Panel Sicherheit zeigt, wie viel nicht dargestellt wird (N).",
 );
-pub const RESEARCH_MODES: Text = Text::of("Research modes", "Modi der Forschung");
+pub const RESEARCH_MODES: Text = Text::of("Research modes", "Forschungsmodi");
 pub const RESEARCH_MODES_HOVER: Text = Text::of(
     "Modes for comparison: parts of the default, and the paper's rules",
     "Modi zum Vergleich: Teile der Vorgabe und die Regeln des Artikels",

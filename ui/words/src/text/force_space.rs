@@ -21,7 +21,7 @@ pub const HOVER: Text = Text::of(
      Doppelklick setzt zurück.",
 );
 
-pub const RESET: Text = Text::of("Reset", "Zurück");
+pub const RESET: Text = Text::of("Reset", "Zurücksetzen");
 pub const RESET_HOVER: Text =
     Text::of("Shows both forces from the first direction again", "Zeigt wieder beide Kräfte aus der ersten Richtung");
 

@@ -29,6 +29,7 @@ pub mod horizon;
 pub mod link;
 pub mod menu;
 pub mod monitor;
+pub mod of_files;
 pub mod overview;
 pub mod playback;
 pub mod ready;

@@ -42,6 +42,22 @@ pub fn check_failed(day: &str) -> String {
     text_format!("not passed on {day}", "nicht bestanden am {day}")
 }
 
+/// Returns the lines of a reason that have no room.
+pub fn more(count: usize) -> String {
+    text_format!("and {count} more", "und {count} weitere")
+}
+
+/// Returns how many steps of the set-up are done, and the least time of the others.
+pub fn progress(done: usize, all: usize, minutes: u64) -> String {
+    if done == all {
+        return text_format!("{done} of {all} done", "{done} von {all} erledigt");
+    }
+    text_format!(
+        "{done} of {all} done, at least {minutes} min left",
+        "{done} von {all} erledigt, mindestens noch {minutes} min"
+    )
+}
+
 /// A check of another day, or of other devices.
 pub fn check_outdated(day: &str) -> String {
     text_format!(
@@ -56,14 +72,8 @@ pub fn button(verb: &str, arm: &str, calibration: &str) -> String {
     text_format!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")
 }
 
-pub fn of_arm(arm: &str, sensor: &str, tool: &str) -> String {
-    let after = arm.to_lowercase();
-    text_format!("{arm} arm: sensor {sensor}, {tool}", "Arm {after}: Sensor {sensor}, {tool}")
-}
-
-pub fn of_unknown(arm: &str, why: &str) -> String {
-    let after = arm.to_lowercase();
-    text_format!("{arm} arm: {why}", "Arm {after}: {why}")
+pub fn of_arm(sensor: &str, tool: &str) -> String {
+    text_format!("Sensor {sensor}, {tool}", "Sensor {sensor}, {tool}")
 }
 
 pub fn made(day: &str, age: &str) -> String {

@@ -144,7 +144,7 @@ pub const FIGURES_HOVER: Text = Text::of(
 
 /// Returns the gain, and the name of the degree beside it.
 pub fn gain_and_degree(gain: f64) -> String {
-    text_format!("Gain {gain:.2}; degree of the polynomial", "Verstärkung {gain:.2}; Grad des Polynoms")
+    text_format!("Gain {gain:.2}; degree (bars: how often)", "Verstärkung {gain:.2}; Grad (Balken: wie oft)")
 }
 
 /// Returns the accessible name of the bars of the degrees.

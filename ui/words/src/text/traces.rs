@@ -17,7 +17,7 @@ pub const HOVER: Text = Text::of(
      double-click to reset. E marks a moment.",
     "Kraft in N längs der Weltachsen x, y und z wie in der Ansicht, z nach oben. Gemessen: am Instrument, jetzt. \
      Dargestellt: in der Hand, nach allen Sperren. Das Band reicht vom kleinsten bis zum größten Messwert jeder Spalte. \
-     Ziehen verschiebt, Mausrad zoomt, mit Umschalt die senkrechte Achse; Klick und Umschalt-Klick setzen zwei Marken zum \
+     Ziehen verschiebt, Mausrad zoomt, mit Umschalt die senkrechte Achse; Klick und Umschalt-Klick setzen zwei Cursor zum \
      Messen, Rechtsklick öffnet ein Menü, Doppelklick setzt zurück. E markiert einen Moment.",
 );
 pub const SIGNALS: Text = Text::of("Signals", "Signale");
@@ -48,12 +48,12 @@ pub const SPEED: Text = Text::of("speed", "Tempo");
 pub const GAIN: Text = Text::of("gain", "Verstärkung");
 pub const GOVERNED: Text = Text::of("removed by the governor", "von der Bremse entfernt");
 pub const TORQUE: Text = Text::of("torque", "Moment");
-pub const CURSOR_1_HERE: Text = Text::of("Set cursor 1 here", "Marke 1 hier setzen");
-pub const CURSOR_2_HERE: Text = Text::of("Set cursor 2 here", "Marke 2 hier setzen");
+pub const CURSOR_1_HERE: Text = Text::of("Set cursor 1 here", "Cursor 1 hier setzen");
+pub const CURSOR_2_HERE: Text = Text::of("Set cursor 2 here", "Cursor 2 hier setzen");
 pub const COPY: Text = Text::of("Copy values", "Werte kopieren");
 pub const SAVE_CSV: Text = Text::of("Save as CSV", "Als CSV speichern");
 pub const SAVE_PNG: Text = Text::of("Save as PNG", "Als PNG speichern");
-pub const RESET: Text = Text::of("Reset zoom, remove cursors", "Zoom zurück, Marken entfernen");
+pub const RESET: Text = Text::of("Reset zoom, remove cursors", "Zoom zurücksetzen, Cursor entfernen");
 pub const TIME: Text = Text::of("time", "Zeit");
 
 /// Returns a choice of the signals, with its unit.
@@ -74,7 +74,7 @@ pub fn between(seconds: f64) -> String {
 
 /// Returns the accessible name of the differences between the cursors in a plot.
 pub fn difference(plot: &str, values: &str) -> String {
-    text_format!("Between the cursors, {plot}: {values}", "Zwischen den Marken, {plot}: {values}")
+    text_format!("Between the cursors, {plot}: {values}", "Zwischen den Cursorn, {plot}: {values}")
 }
 
 pub const HEADING: Text = Text::of("Force at the tip and in the hand", "Kraft an der Spitze und in der Hand");
@@ -153,5 +153,6 @@ pub fn twist([jaws_mnm, wrist_mnm]: [Option<f64>; 2]) -> String {
         wrist_mnm.map(|mnm| report(mnm, word("at the wrist sensor", "am Handgelenksensor"))),
     ];
     let both: Vec<String> = both.into_iter().flatten().collect();
-    text_format!("Torque about the shaft: {}", "Drehmoment um den Schaft: {}", both.join(", "))
+    let known = if both.is_empty() { "\u{2013}".to_owned() } else { both.join(", ") };
+    text_format!("Torque about the shaft: {known}", "Drehmoment um den Schaft: {known}")
 }

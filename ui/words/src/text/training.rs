@@ -63,7 +63,6 @@ pub fn timed(seconds: f64, words: &str) -> String {
 }
 
 pub const CHOOSE_MATCHED: Text = Text::of(
-    "Two hands on one ring require the mode Matched: in the current mode the loop ends in a fault",
-    "Zwei Hände an einem Ring erfordern den Modus Abgeglichen: im aktuellen Modus endet die Regelung in einer \
-     Störung",
+    "Two hands on one ring can end in a fault in the current mode: choose Matched",
+    "Zwei Hände an einem Ring können im aktuellen Modus zu einer Störung führen: Abgeglichen wählen",
 );

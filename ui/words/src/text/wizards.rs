@@ -119,11 +119,8 @@ pub fn following(arm: &str, calibration: &str) -> String {
     text_format!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
 }
 
-pub fn title(wizard: &str, arm: Option<&str>) -> String {
-    match arm {
-        Some(arm) => text_format!("{wizard} calibration, {arm} arm", "Kalibrierung: {wizard}, Arm {arm}"),
-        None => text_format!("{wizard} calibration", "Kalibrierung: {wizard}"),
-    }
+pub fn title(wizard: &str) -> String {
+    text_format!("{wizard} calibration", "Kalibrierung: {wizard}")
 }
 
 pub fn step_of(step: usize, steps: usize, meaning: &str) -> String {

@@ -11,7 +11,8 @@ const HEIGHT: f32 = 8.0;
 /// Number of segments of the strip.
 const PARTS: u32 = 60;
 
-/// Draws the strip and its text; `rail` is the slider's rectangle, `limit` the gain at its right end.
+/// Draws the strip and its text. They have the same room before the strip is known, so that the widgets below do not
+/// move. `rail` is the slider's rectangle, `limit` the gain at its right end.
 ///
 /// In a separate scope: the content changes with the first contact, and the widgets below must keep their ids, or a slider
 /// drag would end at that moment.
@@ -21,6 +22,7 @@ pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &LiveState, rail
 
 fn strip_ui(ui: &mut Ui, live: &LiveState, rail: Rect, limit: f64) {
     let Some(map) = StabilityMap::committed() else { return };
+    let (rect, response) = ui.allocate_exact_size(vec2(rail.width(), HEIGHT), Sense::hover());
     if !StabilityMap::has(live.mode()) {
         ui.label(small(text::STABLE_GAIN_UNMEASURED)).on_hover_text(text::STABLE_GAIN_HOVER);
         return;
@@ -33,7 +35,6 @@ fn strip_ui(ui: &mut Ui, live: &LiveState, rail: Rect, limit: f64) {
     let delay_s = live.delay_s();
     // The slider's handle stays within the rail by half its own width.
     let ends = rail.x_range().shrink(0.3 * rail.height());
-    let (rect, response) = ui.allocate_exact_size(vec2(rail.width(), HEIGHT), Sense::hover());
     let painter = ui.painter();
     for part in 0..PARTS {
         let gain = limit * (f64::from(part) + 0.5) / f64::from(PARTS);

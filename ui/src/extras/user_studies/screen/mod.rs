@@ -26,7 +26,7 @@ use nima_user_study::UserStudy;
 use nima_words::report_text::chain;
 
 use crate::{
-    console::page::{ClosedRun, Page, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
+    console::page::{LeftPage, Page, PageContext, PageRequest, PageRun, PreparedRun, Room, RunBreak},
     extras::user_studies::{study, text},
 };
 use open_study::{HandSource, OpenStudy};
@@ -35,7 +35,6 @@ use trial::TrialScreen;
 /// The pages, and the open study.
 #[derive(Debug, Default)]
 pub(super) struct Studies {
-    is_shown: bool,
     list: list::StudyList,
     form: Option<form::StudyForm>,
     desk: Option<OpenStudy>,
@@ -61,6 +60,7 @@ enum Leaves {
     /// Start the next trial of this participant.
     Trial(String, HandSource),
     Closed,
+    List,
 }
 
 impl Studies {
@@ -97,7 +97,7 @@ impl Studies {
             return None;
         }
         match self.list.ui(ui) {
-            Some(list::StudyListChoice::Back) => self.is_shown = false,
+            Some(list::StudyListChoice::Back) => return Some(Leaves::List),
             Some(list::StudyListChoice::New) => self.form = form::StudyForm::new(),
             Some(list::StudyListChoice::Open(study)) => self.take_study(*study, None, &mut room),
             None => {}
@@ -133,24 +133,15 @@ impl Page for Studies {
         [text::studies::OPEN.get(), text::studies::OPEN_HOVER.get()]
     }
 
-    fn is_shown(&self) -> bool {
-        self.is_shown
-    }
-
-    fn show(&mut self, folder: Option<&Path>, known: &[std::path::PathBuf]) {
-        self.is_shown = true;
+    fn read(&mut self, folder: Option<&Path>, known: &[std::path::PathBuf]) {
         self.list.read(folder, known);
-    }
-
-    fn hide(&mut self) {
-        self.is_shown = false;
     }
 
     fn holds_machine(&self) -> bool {
         self.desk.is_some()
     }
 
-    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<ClosedRun> {
+    fn ui(&mut self, ui: &mut Ui, room: Room<'_>) -> Option<LeftPage> {
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
         let leaves = CentralPanel::default().frame(frame).show(ui, |ui| self.page_ui(ui, room)).inner?;
         match leaves {
@@ -158,7 +149,8 @@ impl Page for Studies {
                 self.wanted = Some(TrialRequest { participant, hand, is_starting: false });
                 None
             }
-            Leaves::Closed => Some(ClosedRun(self.before.take())),
+            Leaves::Closed => Some(LeftPage::Machine(self.before.take())),
+            Leaves::List => Some(LeftPage::Page),
         }
     }
 

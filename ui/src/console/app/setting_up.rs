@@ -7,67 +7,53 @@ use nima_panels::{CalibrationPage, CalibrationWish, calibrations_ui, tiles::Pane
 use nima_recording::store::ReadyRecord;
 use nima_screen::{theme, widgets::card};
 use nima_wizards::overview::{ArmOverview, SetupStep, overview, overview_ui};
-use nima_words::{language::Text, text};
+use nima_words::text;
 
-use super::ConsoleApp;
+use super::{
+    ConsoleApp,
+    shown_page::{ShownPage, WayBack},
+};
 
 /// Update interval of the page: a calibration may be saved, or a sensor may connect.
 const AGAIN_EVERY: Duration = Duration::from_secs(2);
 
-/// The set-up page.
-#[derive(Debug, Default)]
-pub(super) struct Listing {
-    /// Its content while it is open.
-    open: Option<Setup>,
-    /// A wizard or the check was started on this page, and returns to it.
-    returns: bool,
-}
-
-/// Content of the page, as last read.
+/// The set-up page: its content, as last read.
 #[derive(Debug)]
-struct Setup {
+pub(super) struct SetupPage {
     arms: Vec<ArmOverview>,
     /// The last ready check of the rig.
     check: Option<ReadyRecord>,
     at: Instant,
 }
 
-impl Listing {
-    pub(super) const fn is_open(&self) -> bool {
-        self.open.is_some()
+/// Keeps the last known calibrations of an arm whose sensor is not connected: a sensor that is lost for a moment must not move
+/// the tiles under the pointer. The tile of the devices shows the loss.
+fn with_known(mut arms: Vec<ArmOverview>, before: &[ArmOverview]) -> Vec<ArmOverview> {
+    for arm in arms.iter_mut().filter(|arm| arm.wrist.is_none()) {
+        if let Some(known) = before.iter().find(|known| known.side == arm.side) {
+            arm.clone_from(known);
+        }
     }
-
-    pub(super) fn close(&mut self) {
-        self.open = None;
-    }
-
-    /// Leaves the page, or the wizard that was started on it; returns whether to return to the page.
-    pub(super) fn leave(&mut self) -> bool {
-        let was_open = self.open.take().is_some();
-        std::mem::take(&mut self.returns) && !was_open
-    }
-
-    /// Returns the name of the way back from a wizard or the check.
-    pub(super) const fn way_back(&self) -> Text {
-        if self.returns { text::overview::BACK } else { text::calibrations::CLOSE_WIZARD }
-    }
+    arms
 }
 
 impl ConsoleApp {
     /// Reads the content and opens the page; the loop continues.
-    pub(super) fn open_listing(&mut self) {
-        self.close_check();
-        self.wizards.open = None;
-        self.listing.returns = false;
+    pub(super) fn open_setup(&mut self) {
+        self.way_back = WayBack::Monitor;
         let arms = overview(&self.active, &self.live.rig, &self.running.rig);
+        let arms = match &self.shown {
+            ShownPage::Setup(before) => with_known(arms, &before.arms),
+            _ => arms,
+        };
         let check = self.active.store().and_then(|store| store.last_check(&self.live.rig.name));
-        self.listing.open = Some(Setup { arms, check, at: Instant::now() });
+        self.shown = ShownPage::Setup(Box::new(SetupPage { arms, check, at: Instant::now() }));
     }
 
     /// Lays out the page next to the active calibrations.
-    pub(super) fn listing_layout(&mut self, ui: &mut Ui) {
-        if self.listing.open.as_ref().is_some_and(|setup| setup.at.elapsed() > AGAIN_EVERY) {
-            self.open_listing();
+    pub(super) fn setup_layout(&mut self, ui: &mut Ui) {
+        if matches!(&self.shown, ShownPage::Setup(setup) if setup.at.elapsed() > AGAIN_EVERY) {
+            self.open_setup();
         }
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;
@@ -82,8 +68,9 @@ impl ConsoleApp {
         let mut step = None;
         CentralPanel::default().frame(Frame::new().inner_margin(Margin::symmetric(18, 14))).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                let setup = self.listing.open.as_ref();
-                step = setup.and_then(|setup| overview_ui(ui, &setup.arms, &self.live, setup.check.as_ref(), &closed));
+                if let ShownPage::Setup(setup) = &self.shown {
+                    step = overview_ui(ui, &setup.arms, &self.live, setup.check.as_ref(), &closed);
+                }
             });
         });
         match step {
@@ -102,6 +89,27 @@ impl ConsoleApp {
             SetupStep::Calibrate(wanted) => self.open_wanted(wanted),
             SetupStep::Check => self.obey_calibrations(Some(CalibrationWish::Check)),
         }
-        self.listing.returns = !self.listing.is_open();
+        if !matches!(self.shown, ShownPage::Setup(_)) {
+            self.way_back = WayBack::Setup;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nima_machine::rig::Side;
+    use nima_recording::store::WristId;
+
+    use super::*;
+
+    #[test]
+    fn an_arm_whose_sensor_is_lost_keeps_what_was_known() {
+        let wrist =
+            |serial_number: &str| Some(WristId { serial_number: serial_number.to_owned(), tool: "grasper".to_owned() });
+        let arm = |side, wrist| ArmOverview { side, wrist, lines: Vec::new() };
+        let before = [arm(Side::Right, wrist("SN1")), arm(Side::Left, wrist("SN2"))];
+        let lost = vec![arm(Side::Right, None), arm(Side::Left, wrist("SN3"))];
+        let now = with_known(lost, &before);
+        assert_eq!([&now[0].wrist, &now[1].wrist], [&wrist("SN1"), &wrist("SN3")], "another sensor is another arm");
     }
 }

@@ -106,7 +106,7 @@ fn increments_predict_a_damped_spring_and_a_force_that_grows() {
             worst_n = worst_n.max((rendered - force_n(k))[0].abs());
         }
     }
-    assert!(worst_n < 0.05, "{worst_n} N, where holding errs by up to 1 N");
+    assert!(worst_n < 0.2, "{worst_n} N, where holding errs by up to 1 N");
 }
 
 #[test]

@@ -172,6 +172,7 @@ fn table(window: usize) -> f64 {
         ("identifier step, passivity", ModeSet::only(Mode::Baseline(Baseline::Passivity))),
         ("identifier step, kalman", ModeSet::only(Mode::Baseline(Baseline::Kalman))),
         ("identifier step, autoregressive", ModeSet::only(Mode::Baseline(Baseline::Autoregressive))),
+        ("identifier step, increments", ModeSet::only(Mode::Baseline(Baseline::Increments))),
     ] {
         let samples: Vec<_> = (0..warm + calls).map(sample).collect();
         let mut identifier = identifier(window, modes);

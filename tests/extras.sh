@@ -70,6 +70,20 @@ h264() {
   timed cargo test --locked -p nima-console --features h264 --lib a_recorded_stream
 }
 
+# A tick of the whole loop under LLVM's RealtimeSanitizer, which only a nightly compiler has. First, the calls that it must find.
+rtsan() {
+  need_cargo
+  cargo +nightly --version >/dev/null 2>&1 || { say "a nightly compiler is missing: rustup toolchain install nightly"; exit 1; }
+  local target=${CARGO_TARGET_DIR:-target}/rtsan machine=x86_64-unknown-linux-gnu call
+  local program=$target/$machine/debug/nima-rtsan
+  RUSTFLAGS=-Zsanitizer=realtime timed cargo +nightly build --locked --manifest-path tests/rtsan/Cargo.toml \
+    --target $machine --target-dir "$target"
+  for call in allocation lock file; do
+    ! "$program" $call 2>/dev/null || { say "the sanitizer does not find: $call"; exit 1; }
+  done
+  timed "$program"
+}
+
 # Builds the wheel of the Python package, installs it into a separate environment, and runs its tests and notebooks there. Separate, because no other
 # test needs PyO3 and a release build. --speed also compares its time with that of the same in Rust.
 python_package() {

@@ -26,6 +26,7 @@ class GravityReport(TypedDict):
     mass_kg: float | None
     com_m: list[float] | None
     folds: int
+    drift_n: float | None
     fits: list[dict[str, Any]]
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from os import PathLike
+from dataclasses import dataclass, field
+from os import PathLike, fspath
 from typing import Any, TypedDict, cast
 
 import numpy as np
@@ -63,6 +64,8 @@ class Figures(TypedDict):
     rejected: int
     holes: int
     longest_hole_s: float
+    force_renewal_hz: float | None
+    position_scale: float
     tick_us: dict[str, float]
 
 
@@ -141,6 +144,8 @@ class Recording:
     """Forces at the tip, shape (n, a), N."""
     leader_positions_m: Floats | None
     """The leader's own motion, shape (n, a), m, if it was mapped."""
+    notes: list[str] = field(default_factory=list)
+    """Data that a session lacks, one line each; empty for a complete one, and for a table."""
 
 
 def read_recording(
@@ -149,7 +154,7 @@ def read_recording(
     map: Mapping[str, str] | Sequence[str] = (),
     arm: str | None = None,
 ) -> Recording:
-    """Read a table (CSV) or an arm of a session (.mcap), as ``nima identify`` does.
+    """Read a table (CSV) or an arm of a session (.mcap), as ``nima identify`` does. Warn of data that the session lacks.
 
     Parameters
     ----------
@@ -168,7 +173,10 @@ def read_recording(
     ValueError
         A column is missing, a field is not a number, or time does not increase; the error names the line.
     """
-    return Recording(**_nima.read_recording(path, _map_texts(map), arm))
+    recording = Recording(**_nima.read_recording(path, _map_texts(map), arm))
+    for note in recording.notes:
+        warnings.warn(f"{fspath(path)}: {note}", stacklevel=2)
+    return recording
 
 
 def identify(

@@ -37,6 +37,7 @@ class _Recording(TypedDict):
     positions_m: _Floats
     forces_n: _Floats
     leader_positions_m: _Floats | None
+    notes: list[str]
 
 def modes() -> list[str]: ...
 def rate_of(times_s: _Floats) -> float: ...

@@ -109,7 +109,7 @@ class Session:
 
     @property
     def notes(self) -> list[str]:
-        """Defects of the file, one line each; empty for an intact file."""
+        """Data that the file lacks, one line each, as every command reports them; empty for a complete file. Reads all of it."""
         return self._native.notes
 
     @property

@@ -7,8 +7,11 @@ use nima_core::{
     safety::Gate,
 };
 use nima_machine::rig::Side;
-use nima_recording::csv::{self, AXIS_NAMES, ColumnMapping, ColumnSource, CsvRecording, RecordingError};
-use nima_session::plot_channels;
+use nima_recording::{
+    csv::{self, AXIS_NAMES, ColumnMapping, ColumnSource, CsvRecording, RecordingError},
+    session::SessionReader,
+};
+use nima_session::{completeness, plot_channels};
 use nima_study::replay::{ReplayMotion, ReplayOptions, ReplayRow, replay_motion};
 use numpy::{IntoPyArray as _, PyReadonlyArray1};
 use pyo3::{
@@ -253,12 +256,15 @@ pub(crate) fn read_recording<'py>(
     }
     let arm = arm.map(side).transpose()?;
     let mapping = ColumnMapping::parse(&map).map_err(value)?;
-    let recording = guarded(|| {
+    let (recording, notes) = guarded(|| {
         py.detach(|| {
             if is_session {
-                return plot_channels::recording(&path, arm).map_err(|error| of_file(&path, error));
+                let reader = SessionReader::open(&path).map_err(|error| of_file(&path, error))?;
+                let recording = plot_channels::recording(&path, arm).map_err(|error| of_file(&path, error))?;
+                return Ok((recording, completeness::missing(&reader)));
             }
-            CsvRecording::read(&path, &mapping).map_err(|error: RecordingError| of_file(&path, error))
+            let read = CsvRecording::read(&path, &mapping);
+            Ok((read.map_err(|error: RecordingError| of_file(&path, error))?, Vec::new()))
         })
     })?;
     let lanes = recording.axes.len();
@@ -276,6 +282,7 @@ pub(crate) fn read_recording<'py>(
         leader_m.iter().flat_map(|position_m| (0..lanes).map(move |lane| position_m[lane])).collect::<Vec<f64>>()
     });
     result.set_item("leader_positions_m", leader.map(|leader| given2(py, leader, lanes)).transpose()?)?;
+    result.set_item("notes", notes)?;
     Ok(result)
 }
 

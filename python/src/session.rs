@@ -12,7 +12,10 @@ use nima_recording::{
     messages::{JointStateDecoder, foxglove::Log},
     session::{Attachment, SessionReader},
 };
-use nima_session::plot_channels::{self, PlottedError, PlottedTick};
+use nima_session::{
+    completeness,
+    plot_channels::{self, PlottedError, PlottedTick},
+};
 use numpy::IntoPyArray as _;
 use prost::Message as _;
 use pyo3::{
@@ -116,10 +119,10 @@ impl Session {
         self.reader.library()
     }
 
-    /// Returns the faults of the file, one line each.
+    /// Returns the data that the file lacks, one line each; reads it completely.
     #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.reader.notes().to_vec()
+    fn notes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        guarded(|| py.detach(|| Ok(completeness::missing(&self.reader))))
     }
 
     /// Returns the plotted arms.

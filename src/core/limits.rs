@@ -48,6 +48,8 @@ impl fmt::Display for Limits {
 
 // A slower loop cannot follow a hand; no supported device delivers readings faster than 10 kHz.
 pub const RATE_HZ: Limits = Limits::new(20.0, 10_000.0, "Hz");
+/// Rate of a recording. Modes without a window also identify recordings that are too slow for a loop.
+pub const IDENTIFIED_RATE_HZ: Limits = Limits::new(5.0, 10_000.0, "Hz");
 
 /// Feedback gain that any command or file may choose.
 /// 1 is the force at the tip, felt unchanged; amplification is a separate, deliberate action.

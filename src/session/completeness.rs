@@ -1,6 +1,6 @@
 //! The data that a session file lacks: one list for every command that reads a session.
 
-use nima_recording::session::SessionReader;
+use nima_recording::session::{ChannelId, ReaderMessages, SessionMessage, SessionReader};
 
 use crate::{
     journal::{MessageOutline, outline},
@@ -19,60 +19,95 @@ const LINES_MAX: usize = 20;
 ///
 /// The times are in seconds since the start of the session.
 pub fn missing(reader: &SessionReader) -> Vec<String> {
-    let mut lines = reader.notes().to_vec();
-    let tables = reader.metadata().unwrap_or_else(|error| {
-        lines.push(error.to_string());
-        Vec::new()
-    });
-    let is_excerpt = tables.iter().any(|(name, _)| name == trim::TABLE);
-    let has_journal = reader.channels().iter().any(|channel| channel.topic == JOURNAL_TOPIC);
-    let forces: Vec<String> = arms(reader).into_iter().map(|side| topic(side, "forces")).collect();
-    let begin_ns = plot_channels::beginning_ns(reader).unwrap_or(reader.statistics().times_ns.0);
-    let seconds = |time_ns: u64| time_ns.saturating_sub(begin_ns) as f64 * 1e-9;
-    let mut is_closed = false;
-    let mut last_ns = None;
-    let topics: Vec<&str> = forces.first().map(String::as_str).into_iter().chain([JOURNAL_TOPIC]).collect();
-    let journal = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC).map(|channel| channel.id);
-    for message in reader.messages(&topics, 0..u64::MAX) {
-        let message = match message {
-            Ok(message) => message,
-            Err(error) => {
-                lines.push(error.to_string());
-                continue;
-            }
-        };
-        let time_ns = message.log_time_ns();
-        if Some(message.channel()) == journal {
-            match outline(message.data()) {
-                Ok(MessageOutline::Block { lost }) => lines.extend(
-                    lost.iter()
-                        .map(|lost| format!("the recording lost {lost} entries before {:.3} s", seconds(time_ns))),
-                ),
-                Ok(MessageOutline::End(_)) => is_closed = true,
-                Ok(_) => {}
-                Err(error) => lines.push(format!("its journal at {:.3} s: {error}", seconds(time_ns))),
-            }
-            continue;
-        }
-        if let Some(last_ns) = last_ns.replace(time_ns)
-            && seconds(time_ns) - seconds(last_ns) > GAP_MAX_S
-        {
-            lines.push(format!("it has no ticks from {:.3} s to {:.3} s", seconds(last_ns), seconds(time_ns)));
-        }
-    }
-    if has_journal && !is_closed && !is_excerpt {
-        lines.push(match last_ns {
-            Some(last_ns) => format!(
-                "the recording was not closed: it ends at {:.3} s, where the program was killed or the file was cut",
-                seconds(last_ns)
-            ),
-            None => "the recording was not closed: the program was killed, or the file was cut".to_owned(),
+    let mut check = CompletenessCheck::new(reader);
+    while check.step() {}
+    check.finish()
+}
+
+/// Looks for what is missing message by message, for callers that have other work meanwhile.
+pub struct CompletenessCheck<'a> {
+    messages: ReaderMessages<'a>,
+    begin_ns: u64,
+    journal: Option<ChannelId>,
+    is_excerpt: bool,
+    is_closed: bool,
+    /// Time of the last tick.
+    last_ns: Option<u64>,
+    lines: Vec<String>,
+}
+
+impl<'a> CompletenessCheck<'a> {
+    pub fn new(reader: &'a SessionReader) -> Self {
+        let mut lines = reader.notes().to_vec();
+        let tables = reader.metadata().unwrap_or_else(|error| {
+            lines.push(error.to_string());
+            Vec::new()
         });
+        let forces: Vec<String> = arms(reader).into_iter().map(|side| topic(side, "forces")).collect();
+        let topics: Vec<&str> = forces.first().map(String::as_str).into_iter().chain([JOURNAL_TOPIC]).collect();
+        let journal = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC);
+        Self {
+            messages: reader.messages(&topics, 0..u64::MAX),
+            begin_ns: plot_channels::beginning_ns(reader).unwrap_or(reader.statistics().times_ns.0),
+            journal: journal.map(|channel| channel.id),
+            is_excerpt: tables.iter().any(|(name, _)| name == trim::TABLE),
+            is_closed: false,
+            last_ns: None,
+            lines,
+        }
     }
-    let rest = lines.len().saturating_sub(LINES_MAX);
-    lines.truncate(LINES_MAX);
-    if rest > 0 {
-        lines.push(format!("{rest} more places are damaged"));
+
+    /// Reads one message; returns false at the end of the file.
+    pub fn step(&mut self) -> bool {
+        match self.messages.next() {
+            None => return false,
+            Some(Err(error)) => self.lines.push(error.to_string()),
+            Some(Ok(message)) if Some(message.channel()) == self.journal => self.of_journal(&message),
+            Some(Ok(message)) => self.tick(message.log_time_ns()),
+        }
+        true
     }
-    lines
+
+    /// Returns the faults found, one line each.
+    pub fn finish(mut self) -> Vec<String> {
+        if self.journal.is_some() && !self.is_closed && !self.is_excerpt {
+            self.lines.push(match self.last_ns {
+                Some(last_ns) => format!(
+                    "the recording was not closed: it ends at {:.3} s, where the program was killed or the file was cut",
+                    self.seconds(last_ns)
+                ),
+                None => "the recording was not closed: the program was killed, or the file was cut".to_owned(),
+            });
+        }
+        let rest = self.lines.len().saturating_sub(LINES_MAX);
+        self.lines.truncate(LINES_MAX);
+        if rest > 0 {
+            self.lines.push(format!("{rest} more places are damaged"));
+        }
+        self.lines
+    }
+
+    fn seconds(&self, time_ns: u64) -> f64 {
+        time_ns.saturating_sub(self.begin_ns) as f64 * 1e-9
+    }
+
+    fn of_journal(&mut self, message: &SessionMessage) {
+        let t_s = self.seconds(message.log_time_ns());
+        match outline(message.data()) {
+            Ok(MessageOutline::Block { lost }) => self
+                .lines
+                .extend(lost.iter().map(|lost| format!("the recording lost {lost} entries before {t_s:.3} s"))),
+            Ok(MessageOutline::End(_)) => self.is_closed = true,
+            Ok(_) => {}
+            Err(error) => self.lines.push(format!("its journal at {t_s:.3} s: {error}")),
+        }
+    }
+
+    fn tick(&mut self, time_ns: u64) {
+        let Some(last_ns) = self.last_ns.replace(time_ns) else { return };
+        let [from_s, to_s] = [last_ns, time_ns].map(|time_ns| self.seconds(time_ns));
+        if to_s - from_s > GAP_MAX_S {
+            self.lines.push(format!("it has no ticks from {from_s:.3} s to {to_s:.3} s"));
+        }
+    }
 }

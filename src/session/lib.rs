@@ -13,6 +13,7 @@
 //! | `sinks` | outputs of the recorder: the file, and live viewers |
 //! | `file` | the journal in a session file |
 //! | `plot_channels` | the plots of a session file, tick by tick, and the part that `nima identify` needs |
+//! | `recording_kind` | whether a recording is a session, a table, or another program's |
 //! | `trim` | copies a time range of a session into a new session file |
 //! | `anonymous` | removes from a session who recorded it, where and when |
 //! | `session_store` | the folder of a user's sessions: which are kept, and space for the next |
@@ -38,6 +39,7 @@ pub mod monitor_stream;
 pub mod objects;
 pub mod plot_channels;
 pub mod recorder;
+mod recording_kind;
 pub mod remote_copy;
 pub mod replay;
 pub mod report;
@@ -47,4 +49,5 @@ mod topics;
 pub mod trim;
 
 pub use logged::LogValue;
+pub use recording_kind::RecordingKind;
 pub use topics::{STATES, SentenceChannel};

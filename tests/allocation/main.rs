@@ -1,4 +1,4 @@
-//! Code that runs in a tick must not allocate.
+//! Code that runs in a tick must not allocate, or make a system call that can wait.
 //!
 //! The counter counts per thread, but tests with real connections must not wait for a processor core, so each test
 //! holds `alone`.
@@ -19,6 +19,10 @@ mod ndi;
 mod network;
 mod remote;
 mod rings;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod system_calls;
 mod tip_force;
 mod training;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod watched_calls;
 mod whole_loop;

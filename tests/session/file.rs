@@ -122,7 +122,7 @@ fn a_stretch_is_compared_alone_after_all_before_it_was_replayed() {
     assert_eq!(stretch(2.05..3.217), (2050, 1167, false));
     assert_eq!(stretch(3.217..f64::INFINITY), (3217, 1783, true));
     assert_eq!(stretch(0.0..0.05), (0, 50, false));
-    // The same difference, tick by tick, as in the whole session.
+    // A part of the session gives the same forces, tick by tick, as the whole session.
     let change = WhatIfChange { mode: Some(Mode::Dfr), ..WhatIfChange::default() };
     let forces_n = |stretch_s: &Range<f64>| {
         let mut forces_n = Vec::new();

@@ -59,11 +59,11 @@ impl RenderingMethod for AnchoredMethod {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.degree
+        report.degrees.anchored
     }
 
     fn note(models: &Models, report: &mut IdentificationReport) {
-        report.degree = models.anchored.degree;
+        report.degrees.anchored = models.anchored.degree;
         report.gain = models.anchored.gain;
     }
 }
@@ -191,7 +191,7 @@ impl Learner {
             every,
             tick: 0,
             surroundings: BackgroundBuilder::new(settings),
-            regression: ImpedanceRegression::new(rate_hz),
+            regression: ImpedanceRegression::new(rate_hz, settings.earlier_forces),
             found: std::array::from_fn(|_| DelayLine::new(max_delay / every + 1, UNKNOWN)),
             moments: DelayLine::new(max_delay, Instant::default()),
             mixture: Mixture::new(rate_hz),
@@ -359,9 +359,9 @@ impl FollowerEnd for Learner {
     fn take(&mut self, seen: &MethodInput<'_>, parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         parcel.models.anchored = self.step(&seen.posture.stance, seen.force_n, seen.good, seen.learn);
         if seen.learn {
-            report.degree = parcel.models.anchored.degree;
+            report.degrees.anchored = parcel.models.anchored.degree;
             report.gain = parcel.models.anchored.gain;
-            report.restarts = self.restarts;
+            report.failures.restarts = self.restarts;
         }
     }
 

@@ -20,11 +20,14 @@ pub enum Baseline {
     Kalman,
     /// Extrapolation by an autoregressive model of the force, by recursive least squares.
     Autoregressive,
+    /// Recursive least squares of the increments of motion and force over the delay, with the trend of the force.
+    Increments,
 }
 
 impl Baseline {
     /// Every baseline.
-    pub const ALL: [Self; 5] = [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive];
+    pub const ALL: [Self; 6] =
+        [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive, Self::Increments];
 
     /// Returns the name used on the command line, in files and on the screen.
     pub const fn name(self) -> &'static str {
@@ -34,13 +37,13 @@ impl Baseline {
             Self::Passivity => "passivity",
             Self::Kalman => "kalman",
             Self::Autoregressive => "autoregressive",
+            Self::Increments => "increments",
         }
     }
 }
 
 /// Parameters of a baseline in a packet: plain numbers of fixed size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a packet of fixed size")]
 pub enum BaselineModel {
     /// No baseline is computed, or it has no data yet.
     Nothing,
@@ -65,6 +68,19 @@ pub enum BaselineModel {
         /// N.
         force_n: Lanes,
     },
+    /// Increments: the change of the force since the packet.
+    Increments(ForceIncrements),
+}
+
+/// The change of the force over the delay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceIncrements {
+    /// Stiffness (N/m), damping (N s/m) and mass (kg).
+    pub parameters: [Lanes; 3],
+    /// Change that does not depend on the leader's motion (N).
+    pub trend_n: Lanes,
+    /// Minimum and maximum rendered force (N).
+    pub bounds_n: [Lanes; 2],
 }
 
 /// A Hunt-Crossley contact on each side of a surface.
@@ -125,12 +141,19 @@ impl PackedNumbers for BaselineModel {
                 row.put(5.0);
                 row.lanes(*force_n);
             }
+            Self::Increments(increments) => {
+                row.put(6.0);
+                for lanes in [increments.trend_n, increments.bounds_n[0], increments.bounds_n[1]] {
+                    row.lanes(lanes);
+                }
+                row.row(&increments.parameters);
+            }
         }
     }
 
     fn read(row: &mut PackedReader<'_>) -> Option<Self> {
         // An unknown tag fails here, so that a newer sender is not misread.
-        Some(match row.count(5)? {
+        Some(match row.count(6)? {
             0 => Self::Nothing,
             1 => {
                 let surface_m = row.lanes()?;
@@ -142,7 +165,12 @@ impl PackedNumbers for BaselineModel {
             2 => Self::Wave(Wave { returning: row.lanes()?, impedance_n_s_m: row.lanes()? }),
             3 => Self::Returned { energy_j: row.lanes()? },
             4 => Self::Trend { force_n: row.lanes()?, rate_n_s: row.lanes()? },
-            _ => Self::Forecast { force_n: row.lanes()? },
+            5 => Self::Forecast { force_n: row.lanes()? },
+            _ => {
+                let trend_n = row.lanes()?;
+                let bounds_n = [row.lanes()?, row.lanes()?];
+                Self::Increments(ForceIncrements { parameters: row.row()?, trend_n, bounds_n })
+            }
         })
     }
 }

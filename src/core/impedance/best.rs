@@ -1,9 +1,10 @@
-//! Mixture of anchored and matched rendering, weighted by the recent errors of both at the leader.
+//! Mixture of anchored and matched rendering and of holding, weighted by their recent errors at the leader.
 //!
 //! The constants were chosen on four recordings of the first rig and on sequences of changing tissue.
 
 use super::{
     Mode, SLOTS,
+    holding::{HeldMixture, Holding},
     messages::{IdentificationReport, LinkPacket},
     method::{LeaderEnd, LeaderInput, RenderingMethod},
     motion_clock::{fraction, newest_fraction},
@@ -27,7 +28,7 @@ const TRIAL_S: f64 = 4.0;
 /// Errors below this count as equal (N), because the weights would otherwise divide one rounding error by another.
 const EQUAL_N: f64 = 1e-12;
 
-/// The mixture of anchored and matched rendering.
+/// The mixture of anchored and matched rendering and of holding.
 #[derive(Clone, Debug)]
 pub(super) struct Best {
     /// Only where the mode is computed.
@@ -44,20 +45,23 @@ impl RenderingMethod for Best {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.matched_degree
+        report.degrees.matched
     }
 }
 
 impl LeaderEnd for Best {
     fn render(&mut self, moment: &LeaderInput<'_>) -> Option<Lanes> {
-        let weight = self.judge.as_ref().map_or(Lanes::ZERO, Judge::anchored);
         let anchored = moment.forces_n[Mode::Anchored.index()]?;
         let matched = moment.forces_n[Mode::Matched.index()];
-        Some(matched.map_or(anchored, |matched| matched + (anchored - matched) * weight))
+        match &mut self.judge {
+            Some(judge) => Some(judge.render(anchored, matched, moment.measured_n)),
+            None => Some(matched.unwrap_or(anchored)),
+        }
     }
 
     fn keep(&mut self, forces_n: &[Option<Lanes>; SLOTS], pace: f64) {
-        self.judge.iter_mut().for_each(|judge| judge.say(forces_n, pace));
+        let is_rendered = forces_n[Mode::Best.index()].is_some();
+        self.judge.iter_mut().for_each(|judge| judge.keep(is_rendered, pace));
     }
 
     fn judge(&mut self, parcel: &LinkPacket, age_ticks: usize) {
@@ -71,8 +75,7 @@ impl LeaderEnd for Best {
 
 /// A softmin, per axis, of the running errors of the forces that the leader rendered, compared with the force that a
 /// packet delivers one delay later. The follower cannot compute this, because it does not have the motion from which
-/// the leader makes the force, and matched rendering errs by the stiffness times what that motion is wrong. Holding
-/// needs no separate weight: anchored rendering is holding wherever its correction does not help.
+/// the leader makes the force, and matched rendering errs by the stiffness times what that motion is wrong.
 ///
 /// On another tissue both err at first: anchored rendering for one delay, matched rendering until it has learned the
 /// tissue. Because the errors of both are known one delay late, both look bad for as long again. A lasting error of
@@ -81,22 +84,30 @@ impl LeaderEnd for Best {
 /// If the tissue changes again and again, each change costs something before it is detected. The mixture itself is
 /// therefore evaluated over some touches: the more it errs beyond anchored rendering, the smaller the weight of matched
 /// rendering.
+///
+/// Where motion does not explain the force, both are worse than the held force, which is therefore mixed in.
 #[derive(Clone, Debug)]
 struct Judge {
     rate_hz: f64,
-    said: DelayLine<Said>,
+    /// The forces of this tick, until they are stored.
+    newest: Option<Said>,
+    said: DelayLine<Option<Said>>,
     judged: f64,
     anchored_n: Lanes,
     matched_n: Lanes,
     lasting: LastingError,
     trial: MixtureTrial,
     anchored: Lanes,
+    /// `None` in the replay of a session that was recorded without it.
+    holding: Option<Holding>,
 }
 
-/// Forces (N) that anchored, matched and their mixture would have rendered at one tick, and the pace of time then.
-#[derive(Clone, Copy, Debug, Default)]
+/// Forces (N) that anchored, matched and their mixture rendered at one tick, and the pace of time then.
+#[derive(Clone, Copy, Debug)]
 struct Said {
-    forces_n: Option<[Lanes; 3]>,
+    anchored_n: Lanes,
+    matched_n: Lanes,
+    mixture: HeldMixture,
     pace: f64,
 }
 
@@ -147,27 +158,31 @@ impl Judge {
         let none = Lanes::ZERO;
         Self {
             rate_hz: settings.rate_hz,
-            said: DelayLine::new((MAX_DELAY_S * settings.rate_hz).ceil() as usize, Said::default()),
+            newest: None,
+            said: DelayLine::new((MAX_DELAY_S * settings.rate_hz).ceil() as usize, None),
             judged: 0.0,
             anchored_n: none,
             matched_n: none,
             lasting: LastingError::default(),
             trial: MixtureTrial::default(),
             anchored: none,
+            holding: (!settings.earlier_forces).then(|| Holding::new(settings.rate_hz)),
         }
     }
 
-    /// Returns the weight of anchored rendering, 0 to 1. Matched rendering has the remaining weight, and the whole
-    /// weight before the first evaluation.
-    const fn anchored(&self) -> Lanes {
-        self.anchored
+    /// Returns the mixture of the forces (N). Matched rendering has the whole weight before the first evaluation.
+    fn render(&mut self, anchored_n: Lanes, matched_n: Option<Lanes>, held_n: Lanes) -> Lanes {
+        let without_n = matched_n.map_or(anchored_n, |matched_n| matched_n + (anchored_n - matched_n) * self.anchored);
+        let alone = HeldMixture { without: without_n, held: held_n, mixed: without_n };
+        let mixture = self.holding.as_ref().map_or(alone, |holding| holding.mix(without_n, held_n));
+        self.newest = matched_n.map(|matched_n| Said { anchored_n, matched_n, mixture, pace: 0.0 });
+        mixture.mixed
     }
 
-    /// Stores the force rendered by each mode in this tick ([`Mode::index`]).
-    fn say(&mut self, forces_n: &[Option<Lanes>], pace: f64) {
-        let of = |mode: Mode| forces_n[mode.index()];
-        let both = of(Mode::Anchored).zip(of(Mode::Matched)).zip(of(Mode::Best));
-        self.said.push(Said { forces_n: both.map(|((anchored, matched), mixed)| [anchored, matched, mixed]), pace });
+    /// Stores the forces of this tick, if they were rendered.
+    fn keep(&mut self, is_rendered: bool, pace: f64) {
+        let newest = self.newest.take().filter(|_| is_rendered);
+        self.said.push(newest.map(|said| Said { pace, ..said }));
     }
 
     /// Evaluates the forces rendered `age` ticks ago against the force of that time, which has just arrived.
@@ -176,7 +191,7 @@ impl Judge {
             self.forget();
             return;
         }
-        let Some(&Said { forces_n: Some(said_n), pace }) = self.said.get(age) else { return };
+        let Some(&Some(Said { anchored_n, matched_n, mixture, pace })) = self.said.get(age) else { return };
         if !parcel.fresh || parcel.resting {
             return;
         }
@@ -184,6 +199,7 @@ impl Judge {
         self.judged += pace;
         let memory = MEMORY_S * self.rate_hz;
         let fraction = newest_fraction(pace, self.judged, memory);
+        let said_n = [anchored_n, matched_n, mixture.without];
         let [anchored_n, matched_n, mixed_n] = said_n.map(|said_n| (force_n - said_n).map(f64::abs));
         follow(&mut self.anchored_n, anchored_n, fraction);
         follow(&mut self.matched_n, matched_n, fraction);
@@ -198,6 +214,7 @@ impl Judge {
             let given_up = self.trial.step([anchored_n, mixed_n], pace, self.rate_hz) * (2.0 * full - 1.0);
             self.anchored += (Lanes::splat(1.0) - self.anchored) * given_up;
         }
+        self.holding.iter_mut().for_each(|holding| holding.judge(force_n, &mixture, pace, age));
     }
 
     fn forget(&mut self) {
@@ -208,10 +225,12 @@ impl Judge {
         self.anchored = none;
         self.lasting = LastingError::default();
         self.trial = MixtureTrial::default();
+        self.holding.iter_mut().for_each(Holding::reset);
     }
 
     fn reset(&mut self) {
         self.said.clear();
+        self.newest = None;
         self.forget();
     }
 }
@@ -237,7 +256,7 @@ pub(super) fn eighth_power(value: Lanes) -> Lanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impedance::{ModeSet, SLOTS};
+    use crate::impedance::ModeSet;
 
     const DELAY: usize = 100;
 
@@ -252,19 +271,13 @@ mod tests {
         /// Runs for some ticks; returns the weight of anchored rendering afterwards.
         fn run(&mut self, ticks: usize, errors_n: [f64; 2]) -> f64 {
             let parcel = LinkPacket { fresh: true, modes: ModeSet::only(Mode::Best), ..LinkPacket::BLANK };
+            let [anchored_n, matched_n] = errors_n.map(Lanes::splat);
             for _ in 0..ticks {
-                let mut forces_n = [None; SLOTS];
-                let weight = self.0.anchored()[0];
-                let [anchored_n, matched_n] = errors_n;
-                let mixed_n = matched_n + (anchored_n - matched_n) * weight;
-                for (mode, error_n) in [(Mode::Anchored, anchored_n), (Mode::Matched, matched_n), (Mode::Best, mixed_n)]
-                {
-                    forces_n[mode.index()] = Some(Lanes::splat(error_n));
-                }
-                self.0.say(&forces_n, 1.0);
+                self.0.render(anchored_n, Some(matched_n), Lanes::splat(1.0));
+                self.0.keep(true, 1.0);
                 self.0.receive(&parcel, DELAY);
             }
-            self.0.anchored()[0]
+            self.0.anchored[0]
         }
     }
 

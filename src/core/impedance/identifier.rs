@@ -109,21 +109,12 @@ impl Identifier {
         self.idle_ticks = 0;
         let LinkPacket { t_s, force_n, fresh, .. } = self.parcel;
         self.parcel = LinkPacket { t_s, force_n, fresh, modes, ..LinkPacket::BLANK };
-        let IdentificationReport { t_s, learnt, rejected, restarts, literal_failures, mut horizon_error_n, .. } =
-            self.report;
+        let IdentificationReport { t_s, learnt, failures, mut horizon_error_n, .. } = self.report;
         for mode in self.settings.modes.modes().filter(|mode| begins(*mode) || !modes.contains(*mode)) {
             horizon_error_n[mode.index()] = 0.0;
         }
-        self.report = IdentificationReport {
-            t_s,
-            modes,
-            learnt,
-            rejected,
-            restarts,
-            literal_failures,
-            horizon_error_n,
-            ..IdentificationReport::BLANK
-        };
+        self.report =
+            IdentificationReport { t_s, modes, learnt, failures, horizon_error_n, ..IdentificationReport::BLANK };
     }
 
     /// Adds one sample.
@@ -142,9 +133,10 @@ impl Identifier {
         // A missing force is replaced by the last one so that every history keeps one entry per tick; `fresh` marks it.
         self.last_force_n = force.unwrap_or(self.last_force_n);
         self.report.t_s = self.last_t_s;
-        self.report.rejected += u64::from(!good);
 
         let now = self.track.step(position);
+        let good = good && !self.track.is_bridged();
+        self.report.failures.samples += u64::from(!good);
         let x = self.track.paper_x();
         let usable = good && self.track.settled();
         let learn = !self.rests(good);

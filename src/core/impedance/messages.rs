@@ -125,15 +125,7 @@ pub struct IdentificationReport {
     pub prediction_valid: [bool; SLOTS],
     /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
-    /// The paper's choice of the degree, by the recipe; 0 while the window is not full or no degree can be solved.
-    pub paper_degree: u8,
-    /// Degree of anchored rendering: the highest power of the position in the model with the largest weight, 1 or 3; 0
-    /// without a correction.
-    pub degree: u8,
-    /// Degree of the matched model with the largest weight; 0 before anything is known.
-    pub matched_degree: u8,
-    /// Degree of matched rendering in the paper's columns.
-    pub nima_degree: u8,
+    pub degrees: IdentifiedDegrees,
     /// Motion columns of the nested window solution that predicts the force best at the prediction horizon, 0 (none) to
     /// 15: three per degree (x, v, a). Like condition, rank and excitation it is computed only where anchored and
     /// literal are compared.
@@ -147,14 +139,34 @@ pub struct IdentificationReport {
     pub rank: u8,
     /// Variation of the motion in the window.
     pub excitation: ImpedanceExcitation,
-    /// Number of rejected samples so far (not finite, absurd, or time not advancing).
-    pub rejected: u64,
-    /// Number of times that anchored rendering had to restart learning because a number was not finite.
-    pub restarts: u64,
-    /// Number of failed literal solves so far (one per tick, axis and degree).
-    pub literal_failures: u64,
+    pub failures: IdentificationFailures,
     /// Running mean (about 0.5 s) of each mode's 3-D error at the prediction horizon (N).
     pub horizon_error_n: [f64; SLOTS],
+}
+
+/// The degree N that each way to identify uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IdentifiedDegrees {
+    /// The paper's choice of the degree, by the recipe; 0 while the window is not full or no degree can be solved.
+    pub paper: u8,
+    /// Highest power of the position in the model of anchored rendering with the largest weight, 1 or 3; 0 without a
+    /// correction.
+    pub anchored: u8,
+    /// Degree of the matched model with the largest weight; 0 before anything is known.
+    pub matched: u8,
+    /// Degree of matched rendering in the paper's columns.
+    pub nima: u8,
+}
+
+/// What went wrong since the start; each count only grows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct IdentificationFailures {
+    /// Rejected samples: not finite, absurd, or time not advancing.
+    pub samples: u64,
+    /// Times that anchored rendering had to restart learning because a number was not finite.
+    pub restarts: u64,
+    /// Failed literal solves, one per tick, axis and degree.
+    pub literal_solves: u64,
 }
 
 impl IdentificationReport {
@@ -188,10 +200,7 @@ impl IdentificationReport {
         prediction_n: [Vector3::new(0.0, 0.0, 0.0); SLOTS],
         prediction_valid: [false; SLOTS],
         reconstruction_n: [Vector3::new(0.0, 0.0, 0.0); MAX_DEGREE],
-        paper_degree: 0,
-        degree: 0,
-        matched_degree: 0,
-        nima_degree: 0,
+        degrees: IdentifiedDegrees { paper: 0, anchored: 0, matched: 0, nima: 0 },
         columns: 0,
         gain: 0.0,
         // The condition number of no column at all.
@@ -202,9 +211,7 @@ impl IdentificationReport {
             velocity_m_s: Vector3::new(0.0, 0.0, 0.0),
             acceleration_m_s2: Vector3::new(0.0, 0.0, 0.0),
         },
-        rejected: 0,
-        restarts: 0,
-        literal_failures: 0,
+        failures: IdentificationFailures { samples: 0, restarts: 0, literal_solves: 0 },
         horizon_error_n: [0.0; SLOTS],
     };
 }

@@ -17,6 +17,7 @@
 //! | `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
 //! | `mode`, `method` | the list of the ways to render; the parts of each |
 //! | `paper`, `dfr`, `anchored`, `matched`, `best` | the program's own ways to render |
+//! | `holding` | the fraction of the held force in `best` |
 //! | `baseline` | the names of the methods of others, to compare with; at most one is computed |
 //! | `regressors`, `regression`, `mixture` | experts of anchored rendering and their trust |
 //! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
@@ -33,6 +34,7 @@ mod envelope;
 mod factor;
 mod features;
 mod gram;
+mod holding;
 mod horizon;
 mod identifier;
 mod information;
@@ -62,10 +64,12 @@ mod recipe_tests;
 #[cfg(test)]
 mod rest_tests;
 #[cfg(test)]
+mod robustness_tests;
+#[cfg(test)]
 mod tests;
 
 pub use anchored::AnchoredModel;
-pub use baseline::{Baseline, BaselineModel, HuntCrossleyContact, Wave};
+pub use baseline::{Baseline, BaselineModel, ForceIncrements, HuntCrossleyContact, Wave};
 pub use envelope::Envelope;
 pub use factor::ImpedanceFactor;
 pub use features::{ImpedanceFeatures, MOTION_COLUMNS, Scales};
@@ -73,7 +77,10 @@ pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{MatchedModel, ModelForm};
-pub use messages::{IdentificationReport, ImpedanceExcitation, LinkPacket, Posture, RenderedForces, Sample};
+pub use messages::{
+    IdentificationFailures, IdentificationReport, IdentifiedDegrees, ImpedanceExcitation, LinkPacket, Posture,
+    RenderedForces, Sample,
+};
 pub use method::{Entry, FollowerEnd, LeaderEnd, LeaderInput, MethodInput, Place, RenderingMethod};
 pub use mode::{MODES, Mode, Models, ParseModeError, SLOTS, add_baselines};
 pub use packed::{PACKED_MAX, ParameterPack};

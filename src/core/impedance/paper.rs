@@ -36,11 +36,11 @@ impl RenderingMethod for Literal {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.paper_degree
+        report.degrees.paper
     }
 
     fn note(models: &Models, report: &mut IdentificationReport) {
-        report.paper_degree = models.literal.degree;
+        report.degrees.paper = models.literal.degree;
     }
 }
 
@@ -70,7 +70,7 @@ impl RenderingMethod for Linear {
 
     fn degree(report: &IdentificationReport) -> u8 {
         // The degree of linear is always 1.
-        u8::from(report.paper_degree > 0)
+        u8::from(report.degrees.paper > 0)
     }
 }
 
@@ -183,8 +183,8 @@ impl FollowerEnd for PaperMethod {
         };
         parcel.models.linear = *solver.model(1);
         parcel.models.literal = *solver.model(choice);
-        report.paper_degree = choice as u8;
-        report.literal_failures = solver.failures();
+        report.degrees.paper = choice as u8;
+        report.failures.literal_solves = solver.failures();
         for degree in 1..=MAX_DEGREE {
             // In the report only: the reconstruction at the newest sample, as the paper evaluates it.
             report.reconstruction_n[degree - 1] = (seen.force_n - solver.model(degree).product(seen.x)).vector();

@@ -55,11 +55,11 @@ fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
             report.prediction_n[mode.index()].iter().copied().for_each(&mut mix);
         }
         report.reconstruction_n.iter().flat_map(|error_n| error_n.iter().copied()).for_each(&mut mix);
-        mix(f64::from(report.paper_degree));
-        mix(report.literal_failures as f64);
+        mix(f64::from(report.degrees.paper));
+        mix(report.failures.literal_solves as f64);
     }
-    // Computed before the keys were added.
-    assert_eq!(bits, 0x3a84_451f_1665_593e, "{bits:#x}");
+    // Computed before the keys were added; since then, the jump at the end of a press is bridged for one sample.
+    assert_eq!(bits, 0x9941_597e_72f3_46d8, "{bits:#x}");
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn the_next_samples_choose_no_degree_for_the_noise() {
             let s = sample(k, 1000.0);
             let noise_n = Vector3::from_fn(|_, _| 0.05 * (uneven(&mut state) - 0.5));
             identifier.step(&Sample { force_n: 100.0 * s.position_m + noise_n, ..s });
-            sum += f64::from(identifier.report().paper_degree) / 3000.0;
+            sum += f64::from(identifier.report().degrees.paper) / 3000.0;
         }
         sum
     };

@@ -80,7 +80,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
     let report = identifier.report();
     let valid = Mode::ALL.map(|mode| report.prediction(mode).is_some());
     assert_eq!(valid, Mode::ALL.map(|mode| matches!(mode, Mode::Dfr | Mode::Matched)));
-    assert_eq!((report.paper_degree, report.degree, report.nima_degree, report.rank), (0, 0, 0, 0));
+    assert_eq!((report.degrees.paper, report.degrees.anchored, report.degrees.nima, report.rank), (0, 0, 0, 0));
     assert_eq!(identifier.parcel(), alone.parcel(), "what is left out leaves no trace");
 
     // An added mode restarts learning, while the other one continues.
@@ -90,7 +90,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
         alone.step(&sample(k, 1000.0));
     }
     assert_eq!(identifier.parcel().models.matched, alone.parcel().models.matched);
-    assert!(identifier.report().degree > 0 && identifier.report().paper_degree > 0);
+    assert!(identifier.report().degrees.anchored > 0 && identifier.report().degrees.paper > 0);
     assert!(identifier.report().rank > 0, "the window's degrees are available for comparison");
     assert!(identifier.report().prediction(Mode::Linear).is_none());
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{AXES, Baseline, MAX_DEGREE, MODES, Mode, features::Scales, recipe::Recipe};
 use crate::{
-    limits::{DELAY_S, RATE_HZ, REST_N, RIDGE, WINDOW_SAMPLES},
+    limits::{DELAY_S, IDENTIFIED_RATE_HZ, REST_N, RIDGE, WINDOW_SAMPLES},
     signal::DifferentiatorKind,
 };
 
@@ -100,7 +100,7 @@ pub enum OwnMotion {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImpedanceSettings {
-    /// Samples per second, 20 to 10 000.
+    /// Samples per second, 5 to 10 000; a loop requires 20.
     pub rate_hz: f64,
     /// Length of the sliding window (s); 10 to 10 000 samples. The paper's 0.3.
     pub window_s: f64,
@@ -127,6 +127,9 @@ pub struct ImpedanceSettings {
     pub ridge: f64,
     /// Interpretation of the paper in the modes literal and linear.
     pub literal: Recipe,
+    /// Computes the forces as sessions with a journal of version 5 did: `best` without holding, longer memories, single
+    /// wrong positions used, and the motion held during a gap. For their replay only.
+    pub earlier_forces: bool,
 }
 
 impl Default for ImpedanceSettings {
@@ -146,6 +149,7 @@ impl Default for ImpedanceSettings {
             // Design choice: far above the rounding of a window, far below the motion of a working hand.
             ridge: 1e-6,
             literal: Recipe::default(),
+            earlier_forces: false,
         }
     }
 }
@@ -165,12 +169,13 @@ impl ImpedanceSettings {
     /// ```
     pub fn validate(&self) -> Result<(), SettingsError> {
         use SettingsError as E;
-        if !RATE_HZ.contains(self.rate_hz) {
+        if !IDENTIFIED_RATE_HZ.contains(self.rate_hz) {
             return Err(E::Rate { rate_hz: self.rate_hz });
         }
         let samples = (self.window_s * self.rate_hz).round();
         // In samples: both the memory and the cost of a tick depend on their number.
-        if !WINDOW_SAMPLES.contains(samples) {
+        let has_window = self.modes.modes().any(Mode::has_window);
+        if !(self.window_s.is_finite() && samples <= WINDOW_SAMPLES.max) || has_window && samples < WINDOW_SAMPLES.min {
             return Err(E::Window { window_s: self.window_s, samples });
         }
         if !DELAY_S.contains(self.delay_s) {
@@ -225,7 +230,7 @@ impl ImpedanceSettings {
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
-    #[error("the sampling rate of {rate_hz} Hz is out of range: use {RATE_HZ}")]
+    #[error("the sampling rate of {rate_hz} Hz is out of range: use {IDENTIFIED_RATE_HZ}")]
     Rate { rate_hz: f64 },
     #[error("the window of {window_s} s contains {samples} samples: use {WINDOW_SAMPLES}")]
     Window {

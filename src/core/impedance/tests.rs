@@ -55,8 +55,8 @@ fn anchored_beats_delayed_reflection_on_contact() {
     }
     let errors = identifier.report().horizon_error_n;
     assert!(errors[Mode::Anchored.index()] < 0.3 * errors[Mode::Dfr.index()], "{errors:?}");
-    assert!(identifier.report().degree >= 1);
-    assert!(identifier.report().paper_degree >= 1);
+    assert!(identifier.report().degrees.anchored >= 1);
+    assert!(identifier.report().degrees.paper >= 1);
     assert!(identifier.report().rank >= 3);
 }
 
@@ -217,8 +217,8 @@ fn bad_samples_are_counted_and_leave_no_trace() {
         dirty.step(&s);
         assert_finite(dirty.report(), dirty.parcel());
     }
-    assert_eq!(dirty.report().rejected, expected);
-    assert_eq!(clean.report().rejected, 0);
+    assert_eq!(dirty.report().failures.samples, expected);
+    assert_eq!(clean.report().failures.samples, 0);
     let error = |identifier: &Identifier| identifier.report().horizon_error_n[Mode::Anchored.index()];
     assert!(error(&dirty) < 3.0 * error(&clean) + 0.02, "{} {}", error(&dirty), error(&clean));
 }
@@ -234,7 +234,7 @@ fn standstill_renders_what_was_measured() {
     let report = identifier.report();
     assert_eq!(report.prediction_n[Mode::Dfr.index()], still.force_n);
     assert!((report.prediction_n[Mode::Anchored.index()] - still.force_n).norm() < 1e-9);
-    assert_eq!(report.degree, 0);
+    assert_eq!(report.degrees.anchored, 0);
 }
 
 #[test]
@@ -247,8 +247,8 @@ fn one_axis_leaves_the_others_alone() {
         identifier.step(&s);
         assert_finite(identifier.report(), identifier.parcel());
     }
-    assert_eq!(identifier.report().rejected, 0);
-    assert!(identifier.report().paper_degree >= 1);
+    assert_eq!(identifier.report().failures.samples, 0);
+    assert!(identifier.report().degrees.paper >= 1);
     let [_, y, z, spare] = identifier.solution().unwrap().coefficients(16).map(|m| m.0)[3];
     assert_eq!([y, z, spare], [0.0; 3]);
 }
@@ -317,7 +317,7 @@ fn nothing_that_comes_in_makes_a_number_that_is_not_finite() {
         let bound = 1e4 * settings.scales.force_n * 2.0;
         assert!(rendered.force_n[Mode::Anchored.index()].norm() <= bound, "tick {k}");
     }
-    assert_eq!(identifier.report().restarts, 0);
+    assert_eq!(identifier.report().failures.restarts, 0);
 }
 
 #[test]

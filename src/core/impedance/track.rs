@@ -8,12 +8,23 @@ use super::{
     regressors::{MotionState, position_bank, shortest_fraction},
     settings::ImpedanceSettings,
 };
-use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
+use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion, settled};
 
 /// Maximum time (s) for which a missing position is extrapolated at the last speed; after that, the position is held.
 /// Design choice.
 /// At 0.2 m/s, the position of a hand that stops at once is then 2 mm off.
 const BRIDGE_S: f64 = 0.01;
+
+/// Samples that refill a differentiator after a gap, per sample of the bridge: its window is 20 ms or five samples.
+const REFILL: usize = 3;
+
+/// A step of more than this many times the largest recent one may be a glitch: the position is used only once the next
+/// one confirms it. Design choice; a hand that starts within one sample loses only that sample.
+const DOUBTED: f64 = 20.0;
+/// Number of known steps before one is doubted.
+const KNOWN_STEPS: u32 = 50;
+/// Memory of the largest step (s).
+const STEP_S: f64 = 20.0;
 
 /// A position or a force of more than this many scales is implausible (1 km, 40 kN with the default scales) and is not
 /// raised to powers.
@@ -37,6 +48,48 @@ pub(super) struct MotionTrack {
     period_s: f64,
     bridge_ticks: usize,
     missing: usize,
+    /// `None` in the replay of a session that was recorded without it.
+    glitches: Option<GlitchFilter>,
+}
+
+/// Rejects a position that is far from the last one, until the next one confirms it.
+#[derive(Clone, Debug)]
+struct GlitchFilter {
+    fade: f64,
+    last_m: Option<Lanes>,
+    doubted_m: Option<Lanes>,
+    largest_m: f64,
+    steps: u32,
+}
+
+impl GlitchFilter {
+    fn new(rate_hz: f64) -> Self {
+        Self { fade: 1.0 - (STEP_S * rate_hz).recip(), last_m: None, doubted_m: None, largest_m: 0.0, steps: 0 }
+    }
+
+    /// Returns the position if it can be used. `ticks`: since the last used one.
+    fn step(&mut self, position_m: Lanes, ticks: usize) -> Option<Lanes> {
+        let step_m = self.last_m.map_or(0.0, |last_m| (position_m - last_m).norm()) / ticks as f64;
+        self.steps = self.steps.saturating_add(1);
+        let usual = self.steps <= KNOWN_STEPS || step_m <= DOUBTED * self.largest_m || self.largest_m <= 0.0;
+        let doubted_m = self.doubted_m.take();
+        let seen_m = match doubted_m {
+            _ if usual => step_m,
+            // The second sample shows how fast this motion is, and confirms the first one.
+            Some(doubted_m) => (position_m - doubted_m).norm(),
+            None => {
+                self.doubted_m = Some(position_m);
+                return None;
+            }
+        };
+        self.largest_m = settled(self.largest_m * self.fade).max(seen_m);
+        self.last_m = Some(position_m);
+        Some(position_m)
+    }
+
+    fn reset(&mut self) {
+        *self = Self { last_m: None, doubted_m: None, largest_m: 0.0, steps: 0, ..*self };
+    }
 }
 
 impl MotionTrack {
@@ -58,13 +111,22 @@ impl MotionTrack {
             // Rounded up: a gap of exactly this length is still bridged.
             bridge_ticks: (BRIDGE_S * settings.rate_hz).ceil() as usize,
             missing: 0,
+            glitches: (!settings.earlier_forces).then(|| GlitchFilter::new(settings.rate_hz)),
         }
     }
 
-    /// Adds this tick's position; `None` if it is missing: the last position then continues at its speed for at most 10
-    /// ms and is held after that. Before the first good position the motion is zero.
+    /// Adds this tick's position. If it is missing (`None`) or may be a glitch, the last position continues at its speed for
+    /// at most 10 ms and is held after that. Before the first good position the motion is zero.
     pub(super) fn step(&mut self, position: Option<Lanes>) -> Posture {
-        let position = if let Some(position) = position {
+        let since = self.missing + 1;
+        let believed = match &mut self.glitches {
+            Some(glitches) => position.and_then(|position| glitches.step(position, since)),
+            None => position,
+        };
+        let position = if let Some(position) = believed {
+            if self.missing > self.bridge_ticks && self.glitches.is_some() {
+                self.glide(position);
+            }
             self.missing = 0;
             position
         } else if self.history.is_empty() {
@@ -95,6 +157,23 @@ impl MotionTrack {
         self.posture
     }
 
+    /// Returns whether the position of this tick was not used.
+    pub(super) const fn is_bridged(&self) -> bool {
+        self.missing > 0
+    }
+
+    /// Ends a long gap as if the position had moved evenly to the new one: a jump would look like an impact.
+    fn glide(&mut self, position: Lanes) {
+        let held_ticks = self.missing - self.bridge_ticks;
+        let change = position - self.last.x;
+        self.bank.glide(change, held_ticks);
+        let slope = change * (held_ticks as f64 + 1.0).recip();
+        self.differentiator.reset();
+        for k in (1..REFILL * self.bridge_ticks.max(2)).rev() {
+            self.last = self.differentiator.step(position - slope * k as f64);
+        }
+    }
+
     /// Returns the paper's features `X` (SI units) of `u`: the changes of position, velocity and acceleration over the
     /// window (over the time since the first sample, while that is shorter), or their values.
     pub(super) fn paper_x(&self) -> ImpedanceFeatures {
@@ -122,6 +201,7 @@ impl MotionTrack {
         self.history.clear();
         self.last = Motion::default();
         self.missing = 0;
+        self.glitches.iter_mut().for_each(GlitchFilter::reset);
     }
 }
 

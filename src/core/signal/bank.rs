@@ -57,6 +57,17 @@ impl LowPassBank {
         differences
     }
 
+    /// Replaces the last `ticks` values, which were all the same, by values that change evenly by `change` in total: after
+    /// a gap, its ends are known, and the motion between them was not a jump.
+    pub fn glide(&mut self, change: Lanes, ticks: usize) {
+        let slope = change * (ticks.max(1) as f64).recip();
+        for (low, fraction) in self.low.iter_mut().zip(self.fraction) {
+            let kept = libm::pow(1.0 - fraction, ticks as f64);
+            let behind = slope * ((1.0 - fraction) / fraction * (1.0 - kept));
+            *low += change - behind;
+        }
+    }
+
     pub fn reset(&mut self) {
         self.started = false;
     }
@@ -76,6 +87,27 @@ mod tests {
         }
         for (difference, tau_s) in differences.iter().zip([0.005, 0.02, 0.08, 0.32]) {
             assert!((difference[0] - (-0.02_f64 / tau_s).exp()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_glide_replaces_the_values_of_a_gap() {
+        let [mut seen, mut bridged] = [(); 2].map(|()| LowPassBank::new(0.005, 0.32, 1000.0));
+        for bank in [&mut seen, &mut bridged] {
+            bank.step(Lanes::ZERO);
+            for k in 0..100 {
+                bank.step(Lanes::splat(0.01 * f64::from(k)));
+            }
+        }
+        let last = 0.99;
+        for k in 1..=500 {
+            seen.step(Lanes::splat(last + 0.002 * f64::from(k)));
+            bridged.step(Lanes::splat(last));
+        }
+        bridged.glide(Lanes::splat(1.0), 500);
+        let [seen, bridged] = [seen, bridged].map(|mut bank| bank.step(Lanes::splat(1.992)));
+        for (seen, bridged) in seen.iter().zip(bridged) {
+            assert!((seen[0] - bridged[0]).abs() < 1e-9, "{} {}", seen[0], bridged[0]);
         }
     }
 

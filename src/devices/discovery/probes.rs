@@ -68,7 +68,10 @@ pub fn external(name: &str, kind: external::ExternalKind, settings: external::Ex
         external::ExternalKind::Handle => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
             external::ExternalHandle::open(&settings)
         })),
-        external::ExternalKind::Arm => external_arm(name, settings, ArmModel::GEN3),
+        // Without a rig file, the number of its joints is not known.
+        external::ExternalKind::Arm => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
+            external::ExternalArm::open_to_read(&settings)
+        })),
         external::ExternalKind::Sensor => Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || {
             external::ExternalSensor::open(&settings)
         })),

@@ -51,7 +51,22 @@ impl ExternalArm {
     /// # Errors
     /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of an arm sends and receives.
     pub fn open(settings: &ExternalSettings, model: &ArmModel) -> Result<Self, DeviceError> {
-        Ok(Self::on(opening::open(ExternalKind::Arm, settings, model.joints())?, settings, model))
+        Ok(Self::on(opening::open(ExternalKind::Arm, settings, Some(model.joints()))?, settings, model))
+    }
+
+    /// Opens an arm with any number of joints, to read it only: its limits are not known.
+    ///
+    /// # Errors
+    /// The errors of [`ExternalArm::open`], except for the number of joints.
+    pub fn open_to_read(settings: &ExternalSettings) -> Result<impl Device<Reading = ArmReading> + use<>, DeviceError> {
+        Ok(Self::to_read(opening::open(ExternalKind::Arm, settings, None)?, settings))
+    }
+
+    fn to_read(line: ExternalLine, settings: &ExternalSettings) -> Self {
+        let joints = line.joints();
+        let mut arm = Self::on(line, settings, &ArmModel::GEN3);
+        arm.joints = joints;
+        arm
     }
 
     /// Opens the arm over an existing connection, with time stamps from 0 on.
@@ -62,7 +77,7 @@ impl ExternalArm {
         model: &ArmModel,
     ) -> Result<Self, DeviceError> {
         settings.check(ExternalKind::Arm)?;
-        Ok(Self::on(opening::meet(datagrams, ExternalKind::Arm, settings, model.joints(), 0)?, settings, model))
+        Ok(Self::on(opening::meet(datagrams, ExternalKind::Arm, settings, Some(model.joints()), 0)?, settings, model))
     }
 
     fn on(line: ExternalLine, settings: &ExternalSettings, model: &ArmModel) -> Self {

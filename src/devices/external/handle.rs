@@ -13,7 +13,7 @@ use super::{
     opening,
     settings::{ExternalKind, ExternalSettings},
 };
-use crate::{ARM_JOINTS, Device, DeviceError, DeviceIdentity, HandleReading, Health, Leader, Lever, TimedReading};
+use crate::{Device, DeviceError, DeviceIdentity, HandleReading, Health, Leader, Lever, TimedReading};
 
 /// Numbers of a handle beyond these limits are impossible: m, m/s, rad.
 const POSITION_MAX_M: f64 = 2.0;
@@ -42,7 +42,7 @@ impl ExternalHandle {
     /// # Errors
     /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of a handle sends and receives.
     pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
-        Ok(Self::on(opening::open(ExternalKind::Handle, settings, ARM_JOINTS)?, settings))
+        Ok(Self::on(opening::open(ExternalKind::Handle, settings, None)?, settings))
     }
 
     /// Opens the handle over an existing connection, with time stamps from 0 on.
@@ -52,7 +52,7 @@ impl ExternalHandle {
         settings: &ExternalSettings,
     ) -> Result<Self, DeviceError> {
         settings.check(ExternalKind::Handle)?;
-        Ok(Self::on(opening::meet(datagrams, ExternalKind::Handle, settings, ARM_JOINTS, 0)?, settings))
+        Ok(Self::on(opening::meet(datagrams, ExternalKind::Handle, settings, None, 0)?, settings))
     }
 
     fn on(line: ExternalLine, settings: &ExternalSettings) -> Self {

@@ -109,6 +109,10 @@ impl ExternalLine {
         (&self.health, &self.identity)
     }
 
+    pub(super) const fn joints(&self) -> usize {
+        self.joints
+    }
+
     pub(super) const fn is_lost(&self) -> bool {
         matches!(self.health.standing, ConnectionState::Lost(_))
     }

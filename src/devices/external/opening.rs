@@ -21,11 +21,11 @@ const ANSWER_MAX: Duration = Duration::from_millis(200);
 // Half a period of a 1 kHz device.
 const NAP: Duration = Duration::from_micros(500);
 
-/// Listens at the address of the rig file; `joints` counts only for an arm. May take half a second.
+/// Listens at the address of the rig file. `joints`: of the arm, `None` for any number. May take half a second.
 pub(super) fn open(
     kind: ExternalKind,
     settings: &ExternalSettings,
-    joints: usize,
+    joints: Option<usize>,
 ) -> Result<ExternalLine, DeviceError> {
     settings.check(kind)?;
     let udp = Udp::listen(settings.listen, settings.peer())?;
@@ -43,7 +43,7 @@ pub(super) fn meet(
     mut datagrams: Box<dyn TransportDatagrams>,
     kind: ExternalKind,
     settings: &ExternalSettings,
-    joints: usize,
+    joints: Option<usize>,
     begins_us: u64,
 ) -> Result<ExternalLine, DeviceError> {
     let place = settings.place();
@@ -79,7 +79,7 @@ fn first_of(
     datagrams: &mut dyn TransportDatagrams,
     kind: ExternalKind,
     settings: &ExternalSettings,
-    joints: usize,
+    joints: Option<usize>,
 ) -> Result<Datagram, DeviceError> {
     let place = settings.place();
     let begin = Instant::now();
@@ -90,7 +90,7 @@ fn first_of(
         expected: format!("program for {} (protocol {VERSION})", kind.word()),
         found,
     };
-    let of_arm = |datagram: &Datagram| datagram.message == ExternalMessage::Reading(ExternalKind::Arm);
+    let wanted = |datagram: &Datagram| joints.filter(|joints| datagram.joints != *joints);
     while begin.elapsed() < FIRST_MAX {
         let lost = |loss: crate::Loss| DeviceError::Other { place: place.clone(), reason: loss.cause().to_owned() };
         let Some(count) = datagrams.receive(&mut buffer).map_err(lost)? else {
@@ -98,14 +98,14 @@ fn first_of(
             continue;
         };
         trouble = match Datagram::decode(&buffer[..count]) {
-            Ok(datagram) if kind == ExternalKind::Arm && of_arm(&datagram) && datagram.joints != joints => {
-                DeviceError::WrongProduct {
+            Ok(datagram) if datagram.message == ExternalMessage::Reading(kind) => match wanted(&datagram) {
+                None => return Ok(datagram),
+                Some(joints) => DeviceError::WrongProduct {
                     place: place.clone(),
                     expected: format!("program for an arm with {joints} joints"),
                     found: format!("program for an arm with {} joints", datagram.joints),
-                }
-            }
-            Ok(datagram) if datagram.message == ExternalMessage::Reading(kind) => return Ok(datagram),
+                },
+            },
             Ok(Datagram { message: ExternalMessage::Reading(found), .. }) => {
                 wrong(format!("program for {}", found.word()))
             }

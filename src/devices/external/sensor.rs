@@ -8,7 +8,7 @@ use super::{
     opening,
     settings::{ExternalKind, ExternalSettings},
 };
-use crate::{ARM_JOINTS, Device, DeviceError, DeviceIdentity, ForceReading, ForceStatus, Health, TimedReading};
+use crate::{Device, DeviceError, DeviceIdentity, ForceReading, ForceStatus, Health, TimedReading};
 
 /// Numbers of a sensor beyond this limit are impossible: N, Nm, m/s^2, rad/s, degrees Celsius.
 const NUMBER_MAX: f64 = 1e4;
@@ -23,7 +23,7 @@ impl ExternalSensor {
     /// # Errors
     /// [`DeviceError`] if a setting is invalid, the port is in use, or no program of a sensor sends and receives.
     pub fn open(settings: &ExternalSettings) -> Result<Self, DeviceError> {
-        Ok(Self { line: opening::open(ExternalKind::Sensor, settings, ARM_JOINTS)? })
+        Ok(Self { line: opening::open(ExternalKind::Sensor, settings, None)? })
     }
 
     /// Opens the sensor over an existing connection, with time stamps from 0 on.
@@ -33,7 +33,7 @@ impl ExternalSensor {
         settings: &ExternalSettings,
     ) -> Result<Self, DeviceError> {
         settings.check(ExternalKind::Sensor)?;
-        Ok(Self { line: opening::meet(datagrams, ExternalKind::Sensor, settings, ARM_JOINTS, 0)? })
+        Ok(Self { line: opening::meet(datagrams, ExternalKind::Sensor, settings, None, 0)? })
     }
 }
 

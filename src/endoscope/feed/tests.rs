@@ -8,7 +8,10 @@ use std::{
 use nima_testing::real_time;
 
 use super::*;
-use crate::{FrameFault, jpeg::encode};
+use crate::{
+    FrameFault,
+    jpeg::{encode, tests::four_colours},
+};
 
 fn frame(value: u8) -> Vec<u8> {
     let jpeg = encode(&vec![value; 3 * 32 * 32], [32, 32], 80);
@@ -94,6 +97,31 @@ fn a_cut_is_mended_within_a_second() {
         until(&feed, "there again", |look| value(look) == Some(200));
         assert!(cut.elapsed() < Duration::from_secs(1), "{:?}", cut.elapsed());
     });
+}
+
+#[test]
+fn a_camera_with_four_colours_is_told_with_what_to_set_and_never_shown_as_stripes() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("http://{}/", listener.local_addr().unwrap()).parse().unwrap();
+    let feed = EndoscopeFeed::start(address, None, || {}).unwrap();
+    let (mut stream, _) = listener.accept().unwrap();
+    greet(&stream);
+    let jpeg = four_colours();
+    let head = format!("--f\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n", jpeg.len());
+    let image = [head.as_bytes(), &jpeg, b"\r\n"].concat();
+    let begin = Instant::now();
+    loop {
+        stream.write_all(&image).unwrap();
+        let look = feed.look(Instant::now());
+        assert_eq!(value(&look), None, "no stripes");
+        if let FrameHealth::Wrong(FrameFault::Damaged(damage)) = &look.standing {
+            let words = damage.to_string();
+            assert!(words.contains("CMYK") && words.contains("set the camera to colour"), "{words}");
+            break;
+        }
+        assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", look.standing);
+        thread::sleep(Duration::from_millis(20));
+    }
 }
 
 #[test]

@@ -196,8 +196,8 @@ pub(crate) mod tests {
         assert_eq!(decode(&bare), decode(&whole));
     }
 
-    #[test]
-    fn four_colours_are_refused_with_their_name() {
+    /// Returns an image with four colour components.
+    pub(crate) fn four_colours() -> Vec<u8> {
         let mut jpeg = encode(&pattern([32, 32]), [32, 32], 85);
         let frame = jpeg.windows(2).position(|two| two == [0xff, 0xc0]).unwrap();
         // Another component, with the tables of the third one, in the frame and in the scan.
@@ -211,7 +211,12 @@ pub(crate) mod tests {
         jpeg.splice(scan + 11..scan + 11, [4, tables]);
         jpeg[scan + 3] += 2;
         jpeg[scan + 4] = 4;
-        let refused = decode(&jpeg).unwrap_err().to_string();
+        jpeg
+    }
+
+    #[test]
+    fn four_colours_are_refused_with_their_name() {
+        let refused = decode(&four_colours()).unwrap_err().to_string();
         assert!(refused.contains("4 colour components (CMYK)"), "{refused}");
     }
 

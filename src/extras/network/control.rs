@@ -88,6 +88,8 @@ pub enum LinkCause {
         /// Since the last datagram, s.
         for_s: f64,
     },
+    /// Datagrams of others fill the socket, so that those of the other side are lost.
+    Flooded,
     /// One of the two clocks was set: their clock minus ours has changed by this, s. Reported for a second.
     ClockJumped {
         /// Change, s.
@@ -157,6 +159,9 @@ impl std::fmt::Display for LinkCause {
             }
             Self::HeldByAnother => f.write_str("another console controls this follower; request control"),
             Self::NotAsked => f.write_str("no console controls this follower; request control"),
+            Self::Flooded => f.write_str(
+                "other computers send so much to this port that data are lost: restrict the firewall to the other machine's address",
+            ),
             Self::Refused(refusal) => refusal.fmt(f),
         }
     }

@@ -5,6 +5,7 @@
 //! in the publications, which have one degree of freedom. Sources, constants, figures and omissions: docs/modes.md.
 
 mod autoregressive;
+mod increments;
 mod kalman;
 mod model_mediated;
 mod passivity;
@@ -25,7 +26,8 @@ use nima_core::{
 
 use crate::{
     autoregressive::Autoregressive,
-    kalman::Kalman,
+    increments::Increments,
+    kalman::{Kalman, KalmanTuning},
     model_mediated::ModelMediated,
     passivity::{PassivityController, ReturnedEnergy},
     waves::Waves,
@@ -40,6 +42,7 @@ pub fn provide() {
         Baseline::Passivity => Entry::of::<BaselineMethod<ReturnedEnergy>>(),
         Baseline::Kalman => Entry::of::<BaselineMethod<Kalman>>(),
         Baseline::Autoregressive => Entry::of::<BaselineMethod<Autoregressive>>(),
+        Baseline::Increments => Entry::of::<BaselineMethod<Increments>>(),
     });
 }
 
@@ -49,6 +52,11 @@ trait BaselineSender: Clone + Debug + Send + Sync + 'static {
     const BASELINE: Baseline;
 
     fn new(rate_hz: f64, delay_ticks: usize) -> Self;
+
+    /// Computes as in sessions with an earlier journal ([`ImpedanceSettings::earlier_forces`]).
+    fn earlier(self) -> Self {
+        self
+    }
 
     /// Takes the follower's newest motion and force (N; `None` if not measured); returns the data to send.
     fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel;
@@ -67,13 +75,16 @@ impl<S: BaselineSender> RenderingMethod for BaselineMethod<S> {
     const ABOUT: &'static str = "a method of others";
 
     fn follower(settings: &ImpedanceSettings, delay_ticks: usize) -> Option<Box<dyn FollowerEnd>> {
-        Some(Box::new(BaselineFollower { scales: settings.scales, sender: S::new(settings.rate_hz, delay_ticks) }))
+        let sender = S::new(settings.rate_hz, delay_ticks);
+        let sender = if settings.earlier_forces { sender.earlier() } else { sender };
+        Some(Box::new(BaselineFollower { scales: settings.scales, sender }))
     }
 
     fn leader(settings: &ImpedanceSettings) -> Box<dyn LeaderEnd> {
         Box::new(BaselineLeader {
             scales: settings.scales,
             period_s: settings.rate_hz.recip(),
+            earlier_forces: settings.earlier_forces,
             controller: PassivityController::new(settings.rate_hz),
         })
     }
@@ -115,6 +126,7 @@ impl<S: BaselineSender> FollowerEnd for BaselineFollower<S> {
 struct BaselineLeader {
     scales: Scales,
     period_s: f64,
+    earlier_forces: bool,
     controller: PassivityController,
 }
 
@@ -128,9 +140,13 @@ impl LeaderEnd for BaselineLeader {
             BaselineModel::Wave(wave) => waves::decoded(wave, &own),
             BaselineModel::Returned { energy_j } => self.controller.step(moment.measured_n, *energy_j, &own),
             BaselineModel::Trend { force_n, rate_n_s } => {
-                kalman::extrapolated(*force_n, *rate_n_s, moment.age_ticks as f64 * self.period_s)
+                let age_s = moment.age_ticks as f64 * self.period_s;
+                KalmanTuning::of(age_s, self.earlier_forces).extrapolated(*force_n, *rate_n_s, age_s)
             }
             BaselineModel::Forecast { force_n } => *force_n,
+            BaselineModel::Increments(increments) => {
+                increments::force(increments, moment.measured_n, &moment.then.motion(&self.scales), &own)
+            }
         };
         force.is_finite().then_some(force)
     }

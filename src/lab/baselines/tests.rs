@@ -52,7 +52,7 @@ fn the_contact_of_hunt_and_crossley_is_found() {
 
 #[test]
 fn kalman_follows_a_ramp_and_extrapolates_it_as_far_as_a_rate_lasts() {
-    let mut kalman = Kalman::new(RATE_HZ, 0);
+    let mut kalman = Kalman::new(RATE_HZ, 50);
     let mut model = BaselineModel::Nothing;
     assert_eq!(kalman.step(&motion(0.0, 0.0), None), model, "nothing before the first force");
     for k in 0..2000 {
@@ -60,9 +60,53 @@ fn kalman_follows_a_ramp_and_extrapolates_it_as_far_as_a_rate_lasts() {
     }
     let BaselineModel::Trend { force_n, rate_n_s } = model else { panic!("{model:?}") };
     assert!((force_n[0] - 3.0 * 1.999).abs() < 0.03 && (1.0..3.0).contains(&rate_n_s[0]), "{model:?}");
-    let ahead = |age_s: f64| (kalman::extrapolated(force_n, rate_n_s, age_s) - force_n)[0];
+    let tuning = KalmanTuning::of(0.05, false);
+    let ahead = |age_s: f64| (tuning.extrapolated(force_n, rate_n_s, age_s) - force_n)[0];
     assert!(ahead(0.0).abs() < 1e-12 && (ahead(1e-4) - 1e-4 * rate_n_s[0]).abs() < 0.02 * 1e-4 * rate_n_s[0]);
     assert!(ahead(0.01) > 1.5 * ahead(0.003) && ahead(1.0) < 1.2 * ahead(0.01), "a rate does not last for ever");
+}
+
+#[test]
+fn kalman_is_tuned_to_the_delay_and_only_the_newest_journal_knows_it() {
+    let led = |delay: usize, earlier: bool| {
+        let kalman = Kalman::new(RATE_HZ, delay);
+        let mut kalman = if earlier { kalman.earlier() } else { kalman };
+        let mut model = BaselineModel::Nothing;
+        for k in 0..3000 {
+            model = kalman.step(&motion(0.0, 0.0), Some(force((8.0 * f64::from(k) * 1e-3).sin())));
+        }
+        let BaselineModel::Trend { force_n, .. } = model else { panic!("{model:?}") };
+        force_n[0]
+    };
+    let newest_n = (8.0_f64 * 2.999).sin();
+    for delay in [5, 50, 100, 300] {
+        assert!((led(delay, true) - newest_n).abs() < 0.02, "{delay} ms, earlier: near the newest force");
+    }
+    assert!((led(100, false) - newest_n).abs() > 0.1, "a long delay is predicted from the last periods");
+}
+
+#[test]
+fn increments_predict_a_damped_spring_and_a_force_that_grows() {
+    const DELAY: usize = 50;
+    let mut follower = Increments::new(RATE_HZ, DELAY);
+    let own = |k: usize| {
+        let t_s = k as f64 * 1e-3;
+        motion(0.01 * (7.0 * t_s).sin(), 0.07 * (7.0 * t_s).cos())
+    };
+    // The trend is not explained by motion, and holding errs by it and by the spring.
+    let force_n = |k: usize| (own(k).x * -300.0 - own(k).v * 4.0) + force(5.0 + 0.8 * k as f64 * 1e-3);
+    let mut sent = Vec::new();
+    let mut worst_n = 0.0_f64;
+    for k in 0..4000 {
+        let BaselineModel::Increments(increments) = follower.step(&own(k), Some(force_n(k))) else { panic!("{k}") };
+        sent.push(increments);
+        let Some(then) = k.checked_sub(DELAY) else { continue };
+        let rendered = increments::force(&sent[then], force_n(then), &own(then), &own(k));
+        if k > 2000 {
+            worst_n = worst_n.max((rendered - force_n(k))[0].abs());
+        }
+    }
+    assert!(worst_n < 0.05, "{worst_n} N, where holding errs by up to 1 N");
 }
 
 #[test]

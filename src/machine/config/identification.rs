@@ -24,6 +24,9 @@ pub struct Identification {
     pub scales: Scales,
     /// Interpretation of the paper in the modes literal and linear.
     pub literal: Recipe,
+    /// Computes the forces of sessions with an earlier journal; the replay sets it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub earlier_forces: bool,
 }
 
 impl Default for Identification {
@@ -37,6 +40,7 @@ impl Default for Identification {
             cross_talk: false,
             scales: Scales::default(),
             literal: Recipe::default(),
+            earlier_forces: false,
         }
     }
 }

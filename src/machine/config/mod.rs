@@ -235,8 +235,17 @@ impl RigConfig {
     }
 
     pub fn settings(&self) -> ImpedanceSettings {
-        let Identification { window_s, max_degree, rest_n, own_motion, cross_talk, scales, literal, .. } =
-            self.identification;
+        let Identification {
+            window_s,
+            max_degree,
+            compare: _,
+            rest_n,
+            own_motion,
+            cross_talk,
+            scales,
+            literal,
+            earlier_forces,
+        } = self.identification;
         ImpedanceSettings {
             rate_hz: self.rate_hz,
             window_s,
@@ -246,6 +255,7 @@ impl RigConfig {
             cross_talk,
             scales,
             literal,
+            earlier_forces,
             delay_s: self.delay_s,
             modes: ModeSet::default().with(self.mode),
             ..ImpedanceSettings::default()

@@ -101,8 +101,9 @@ impl Gauge {
         self.add(reading.position_m.iter().chain(&turned).copied().chain(rest));
     }
 
-    pub fn arm(&mut self, reading: &ArmReading) {
-        self.add(reading.joint_rad);
+    /// Adds a reading of an arm with this number of joints.
+    pub fn arm(&mut self, reading: &ArmReading, joints: usize) {
+        self.add(reading.joint_rad.into_iter().take(joints));
     }
 
     pub fn sensor(&mut self, reading: &ForceReading) {
@@ -154,6 +155,8 @@ pub struct Gauges {
 
 #[cfg(test)]
 mod tests {
+    use nima_devices::ARM_JOINTS;
+
     use super::*;
 
     #[test]
@@ -190,6 +193,11 @@ mod tests {
         gauge.sensor(&ForceReading::default());
         let counts = |gauge: &Gauge| gauge.channels.map(|channel| channel.count);
         assert_eq!(counts(&gauge), [1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0]);
+        let mut gauge = Gauge::NONE;
+        let zeros = [0.0; ARM_JOINTS];
+        let still = ArmReading { joint_rad: zeros, joint_rad_s: zeros, joint_nm: zeros, servoing: false };
+        gauge.arm(&still, 6);
+        assert_eq!(counts(&gauge)[5..7], [1, 0], "an arm of six joints has no seventh angle, not one of zero");
         let mut gauge = Gauge::NONE;
         let seen = TrackedTool::Seen {
             c_from_tool: UnitQuaternion::identity(),

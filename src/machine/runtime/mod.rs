@@ -7,6 +7,7 @@
 //! dropped and counted.
 
 mod clock_profile;
+mod handle;
 mod jitter;
 mod loop_tap;
 mod os;
@@ -18,10 +19,11 @@ mod virtual_clock;
 mod wrists;
 
 pub use clock_profile::{ClockProfile, ParseClockProfileError, TickTime, TickTimes, VirtualClock};
+pub use handle::{Ender, LoopHandle};
 pub use loop_tap::{Operation, TICKS_TAPPED_MAX, Tap, TapEnd, TapEntry, TapItem, TapPayload, TickRecord, tap};
 pub use summary::{ArmEnd, CauseAndCure, CpuFraction, DeviceFigures, Histograms, ModeError, RuntimeSummary};
 pub use supervisor::STALL_MAX_S;
-pub use thread::{Ender, LoopHandle, LoopStartError, TICKS_WAITING_MAX, start};
+pub use thread::{LoopStartError, TICKS_WAITING_MAX, start};
 pub use virtual_clock::{VirtualSupervisor, run_virtual, run_virtual_on, tick};
 pub use wrists::WristChange;
 

@@ -6,29 +6,28 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
-    thread::{Builder, JoinHandle},
+    thread::Builder,
 };
 
 use nima_core::impedance::SettingsError;
-use nima_devices::DeviceIdentity;
 use rtrb::{Consumer, Producer};
 
 use super::{
-    Assembly, RuntimeClock, RuntimeSummary,
+    Assembly, LoopHandle, RuntimeClock, RuntimeSummary,
     clock_profile::{TickTime, skip},
     loop_tap::{Operation, Tap},
     os,
     phase::LoopPhase,
     summary::{CpuFraction, DeviceFigures, Meters},
     supervisor::{Pulse, Supervisor},
-    wrists::{self, WristChange, WristConnection, Wrists},
+    wrists::{self, Wrists},
 };
 use crate::{
     config::SchedulingClass,
-    hand_over::{FromLoop, ToLoop, from_loop, to_loop},
+    hand_over::{from_loop, to_loop},
     messages::{Command, Event, Tick},
-    rig::{Gauges, Healths, Outputs, Rig, RigError, Roster, SIDES, Side},
-    teleop::{Calibrations, Loop, Timing},
+    rig::{Gauges, Healths, Inputs, Outputs, Rig, RigError, SIDES},
+    teleop::{Loop, Timing},
 };
 
 /// Capacity of the queue of ticks for the screen; further ticks are dropped. 8 s at 1 kHz. A window may be blocked for
@@ -38,12 +37,12 @@ pub const TICKS_WAITING_MAX: usize = 8192;
 /// the loop has ended.
 const COMMANDS_WAITING_MAX: usize = 64;
 /// Capacity of the queue of events for the screen.
-const EVENTS_WAITING_MAX: usize = 256;
+pub(super) const EVENTS_WAITING_MAX: usize = 256;
 /// Health and deliveries of the devices are published once per this many ticks: ten times per second at 1 kHz; a screen
 /// needs no more.
 const HEALTH_EVERY: u64 = 100;
 /// Capacity of the queue of device deliveries; 4 s at 1 kHz, longer than any pause of the screen.
-const GAUGES_WAITING_MAX: usize = 40;
+pub(super) const GAUGES_WAITING_MAX: usize = 40;
 /// Maximum number of device events (connected, lost) handled in one tick. A burst of events would otherwise make the
 /// tick late.
 const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
@@ -61,23 +60,6 @@ pub enum LoopStartError {
     Rig(#[from] RigError),
     #[error("the real-time thread could not be started")]
     Thread(#[from] io::Error),
-}
-
-/// A running loop. Dropping it ends the loop.
-#[derive(Debug)]
-pub struct LoopHandle {
-    commands: ToLoop<Command>,
-    ends: Arc<AtomicBool>,
-    ticks: FromLoop<Tick>,
-    events: FromLoop<Event>,
-    healths: FromLoop<Healths>,
-    gauges: FromLoop<Gauges>,
-    roster: Roster,
-    wrists: WristConnection,
-    thread: Option<JoinHandle<RuntimeSummary>>,
-    /// Declared after the thread: fields are dropped after [`Drop`] has joined the loop's thread, so the supervisor
-    /// outlives the loop.
-    _supervisor: Supervisor,
 }
 
 /// Starts the loop in its own thread.
@@ -127,99 +109,6 @@ pub fn start(assembly: Assembly) -> Result<LoopHandle, LoopStartError> {
         thread: Some(thread),
         _supervisor: supervisor,
     })
-}
-
-impl LoopHandle {
-    /// Sends a command; returns false if the queue is full or the loop has ended.
-    pub fn send(&self, command: Command) -> bool {
-        !self.ends.load(Ordering::Acquire) && !self.commands.is_abandoned() && self.commands.try_send(command).is_ok()
-    }
-
-    /// Calls `each` for every pending tick, oldest first, without blocking.
-    pub fn drain_ticks(&self, mut each: impl FnMut(&Tick)) {
-        // Limited, so that a loop that produces ticks faster than the screen reads them cannot keep the screen in this
-        // function.
-        self.ticks.try_iter().take(TICKS_WAITING_MAX).for_each(|tick| each(&tick));
-    }
-
-    /// Calls `each` for every pending event, oldest first, without blocking.
-    pub fn drain_events(&self, mut each: impl FnMut(&Event)) {
-        self.events.try_iter().take(EVENTS_WAITING_MAX).for_each(|event| each(&event));
-    }
-
-    /// Returns the devices of the rig; empty if everything is simulated.
-    pub fn roster(&self) -> &Roster {
-        &self.roster
-    }
-
-    /// Returns the last connection or disconnection of this side's force sensor. Read it before
-    /// [`LoopHandle::force_sensor`]: [`LoopHandle::activate`] then refuses calibrations if the sensor has been swapped in
-    /// between.
-    pub fn wrist_change(&self, side: Side) -> WristChange {
-        self.wrists.change(side)
-    }
-
-    /// Returns the identity that the force sensor of this side reported; `None` until it has been opened.
-    pub fn force_sensor(&self, side: Side) -> Option<DeviceIdentity> {
-        self.roster.iter().find(|entry| entry.force_sensor_of() == Some(side))?.view.report().identity
-    }
-
-    /// Activates the calibrations of a force sensor, unless the sensor has connected or disconnected since `change`.
-    /// Returns false if the loop cannot accept them now.
-    pub fn activate(&self, change: WristChange, calibrations: &Calibrations) -> bool {
-        self.wrists.activate(change, calibrations)
-    }
-
-    /// Returns the health of the devices; `None` if it has not changed since the last call.
-    pub fn healths(&self) -> Option<Healths> {
-        self.healths.try_recv()
-    }
-
-    /// Returns the deliveries of the devices, in blocks of time, oldest first. Blocks that are not read in time are
-    /// dropped.
-    pub fn gauges(&self) -> impl Iterator<Item = Gauges> {
-        self.gauges.try_iter().take(GAUGES_WAITING_MAX)
-    }
-
-    /// Returns an object that can end this loop from any thread.
-    pub fn ender(&self) -> Ender {
-        Ender(Arc::clone(&self.ends))
-    }
-
-    pub fn is_running(&self) -> bool {
-        self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
-    }
-
-    /// Ends the loop and returns its results; `None` if its thread has panicked.
-    pub fn stop_and_join(mut self) -> Option<RuntimeSummary> {
-        self.end()
-    }
-
-    fn end(&mut self) -> Option<RuntimeSummary> {
-        let thread = self.thread.take()?;
-        self.ender().end();
-        let mut summary = thread.join().ok()?;
-        summary.report_devices(&self.roster);
-        Some(summary)
-    }
-}
-
-/// Ends a loop from any thread: zero force, drives off, arm at rest. The results of the run stay available in the
-/// [`LoopHandle`].
-#[derive(Clone, Debug)]
-pub struct Ender(Arc<AtomicBool>);
-
-impl Ender {
-    pub fn end(&self) {
-        // Not a command, because a full queue must not keep the loop alive.
-        self.0.store(true, Ordering::Release);
-    }
-}
-
-impl Drop for LoopHandle {
-    fn drop(&mut self) {
-        self.end();
-    }
 }
 
 /// Queues from the real-time thread to the others.
@@ -376,6 +265,13 @@ impl Realtime {
         if let Some(tap) = &mut self.tap {
             tap.tick(self.control.events(), timing, &inputs, &outputs, &ticks);
         }
+        self.meter(timing, &inputs, [woke_ns, read_ns, worked_ns, written_ns]);
+        self.publish(timing.now_s, &ticks);
+    }
+
+    /// Adds the times of a tick: after waking up, reading, computing, writing.
+    fn meter(&mut self, timing: &mut Timing, inputs: &[Option<Inputs>; SIDES], times_ns: [u64; 4]) {
+        let [woke_ns, read_ns, worked_ns, written_ns] = times_ns;
         timing.work_s = (worked_ns - read_ns) as f64 * 1e-9;
         self.meters.wake.record(timing.wake_s);
         self.meters.rig.record((read_ns - woke_ns + written_ns - worked_ns) as f64 * 1e-9);
@@ -388,16 +284,21 @@ impl Realtime {
             self.meters.sample_to_force.record(seconds);
         }
         self.meters.ticks += 1;
+    }
+
+    /// Passes events, health and ticks to the window.
+    fn publish(&mut self, now_s: f64, ticks: &[Option<Tick>; SIDES]) {
         for event in self.control.events() {
             self.out.events.push(*event).ok();
         }
         if self.meters.ticks.is_multiple_of(HEALTH_EVERY) {
             self.out.healths.push(self.rig.health()).ok();
-            if let Some(gauges) = self.rig.gauges(timing.now_s) {
+            if let Some(gauges) = self.rig.gauges(now_s) {
                 self.out.gauges.push(gauges).ok();
             }
         }
-        for mut tick in ticks.into_iter().flatten() {
+        for tick in ticks.iter().flatten() {
+            let mut tick = *tick;
             tick.timing.dropped = self.meters.dropped;
             if self.out.ticks.push(tick).is_err() {
                 self.meters.dropped += 1;

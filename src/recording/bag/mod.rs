@@ -12,11 +12,11 @@ use std::{
 };
 
 use nalgebra::Vector3;
-use nima_core::impedance::Sample;
+use nima_core::impedance::{AXES, Sample};
 use nima_files::{PASSAGE, quoted, shortened};
 
 use crate::{
-    csv::{AXIS_NAMES, ColumnMapping, CsvRecording, RecordingError},
+    csv::{AXIS_NAMES, ColumnMapping, CsvRecording, RecordingError, Signals},
     session::{ReadError, SessionReader},
 };
 use codec::{BagField, examples};
@@ -89,6 +89,40 @@ pub fn read(path: &Path, mapping: &ColumnMapping) -> Result<CsvRecording, BagErr
         return Err(BagError::TooShort { path: path.to_owned(), found: samples.len() });
     }
     Ok(CsvRecording::of_samples(path, axes, samples)?)
+}
+
+/// Reads as much of force and position as is mapped, for a look at it: the rest is unknown (NaN). Each message of any mapped
+/// topic gives a row.
+///
+/// # Errors
+/// [`BagError`] if the recording cannot be read, nothing is mapped, or it lacks what is mapped.
+pub fn read_signals(path: &Path, mapping: &ColumnMapping) -> Result<Signals, BagError> {
+    let file = file_of(path)?;
+    let reader = SessionReader::open(&file)?;
+    let series = |name: String| mapping.names(&name).then(|| read_series(&reader, path, mapping, &name)).transpose();
+    let mut forces = [const { None }; AXES];
+    let mut positions = [const { None }; AXES];
+    for ((axis, force), position) in AXIS_NAMES.iter().zip(&mut forces).zip(&mut positions) {
+        *force = series(format!("f{axis}_n"))?;
+        *position = series(format!("{axis}_m"))?;
+    }
+    let mut times_ns: Vec<u64> =
+        forces.iter().chain(&positions).flatten().flat_map(|series| &series.times_ns).copied().collect();
+    times_ns.sort_unstable();
+    times_ns.dedup();
+    let Some(&first_ns) = times_ns.first() else {
+        return Err(BagError::NoMapping { path: path.to_owned(), available: available(&reader) });
+    };
+    let at = |series: &[Option<Series>; AXES], time_ns: u64| {
+        let value = |one: &Option<Series>| one.as_ref().and_then(|one| one.at(time_ns)).unwrap_or(f64::NAN);
+        Vector3::from_fn(|axis, _| value(&series[axis]))
+    };
+    let row = |time_ns: u64| Sample {
+        t_s: (time_ns - first_ns) as f64 * 1e-9,
+        position_m: at(&positions, time_ns),
+        force_n: at(&forces, time_ns),
+    };
+    Ok(Signals::new(times_ns.into_iter().map(row).collect()))
 }
 
 fn is_named(mapping: &ColumnMapping, axis: &str) -> bool {
@@ -254,6 +288,24 @@ mod tests {
                 assert!((sample.force_n.x - 2e-3 * sample.position_m.x).abs() < 1e-9, "{sample:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_look_shows_each_topic_at_its_times_and_the_rest_as_unknown() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        bag(&path);
+        let forces = read_signals(&path, &mapping(&["fz=/ft/wrench.wrench.force.z"])).unwrap();
+        assert_eq!(
+            (forces.rows.len(), forces.force_axes(), forces.position_axes()),
+            (500, [false, false, true], [false; 3])
+        );
+        let both =
+            read_signals(folder.path(), &mapping(&["z=/tool/pose.pose.position.z", "fz=/ft/wrench.wrench.force.z"]))
+                .unwrap();
+        assert!((both.rows[7].position_m.z - 7e-4).abs() < 1e-12 && both.rows[7].position_m.x.is_nan());
+        assert!(both.rows[499].position_m.z.is_nan(), "no pose comes after the last one");
+        assert!(read_signals(&path, &mapping(&[])).unwrap_err().to_string().contains("/tool/pose.pose.position.x"));
     }
 
     #[test]

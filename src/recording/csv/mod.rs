@@ -11,6 +11,7 @@ mod mapping;
 mod pairs;
 mod poses;
 mod rotation;
+mod signals;
 mod table;
 mod time;
 
@@ -25,6 +26,7 @@ pub use dialect::{Comments, CsvDialect, TableText, recognise};
 pub use mapping::{ColumnMapping, ColumnMappingError, ColumnSource, PAIRS, POSES, Quantities};
 pub use pairs::{read_mapped_pairs, read_pairs};
 pub use poses::{read_mapped_poses, read_poses};
+pub use signals::{Signals, read_signals};
 
 pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
 

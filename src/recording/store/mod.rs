@@ -55,6 +55,10 @@ pub enum StoreError {
         found: String,
         wanted: String,
     },
+    #[error(
+        "cannot write {path}: it is a calibration of kind \"{found}\", and one of kind \"{wanted}\" would replace it; name another file"
+    )]
+    Replaces { path: PathBuf, found: String, wanted: &'static str },
     /// The verdict forbids its use, and no person has overridden it.
     #[error("the {kind} calibration was refused: {reason}; repeat it, or name the person who overrides the verdict")]
     Refused { kind: &'static str, reason: String },
@@ -229,11 +233,32 @@ pub fn write<R: CalibrationRecord>(path: &Path, record: &R) -> Result<(), StoreE
     if let Some(fault) = record.fault() {
         return Err(unwritable(fault.to_owned()));
     }
+    check_kind::<R>(path)?;
     let text = toml::to_string(record).map_err(|error| unwritable(error.to_string()))?;
     let failed = |source| StoreError::Write { path: path.to_owned(), source };
     // Copy first, then rename the new file over it, so that a calibration exists at every moment.
     keep_previous(path).map_err(failed)?;
     write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(failed)
+}
+
+/// Checks that a record of this kind would not replace a calibration of another kind.
+///
+/// # Errors
+/// [`StoreError::Replaces`] if it would.
+pub fn check_kind<R: CalibrationRecord>(path: &Path) -> Result<(), StoreError> {
+    // A file that cannot be read, or is not a calibration, is replaced like any other output.
+    let text = nima_files::read_text(path, nima_files::CONFIG_MAX).unwrap_or_default();
+    let head: toml::Table = text.parse().unwrap_or_default();
+    match kind_of(&head) {
+        Some(found) if found != R::KIND => {
+            Err(StoreError::Replaces { path: path.to_owned(), found: quoted(found), wanted: R::KIND })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn kind_of(head: &toml::Table) -> Option<&str> {
+    head.get("kind").and_then(toml::Value::as_str)
 }
 
 /// Copies the file at `path`, if it exists, to the same name with the ending `.previous`.
@@ -263,7 +288,7 @@ pub fn read<R: CalibrationRecord>(path: &Path) -> Result<Option<R>, StoreError> 
     };
     // Check the kind first: keys of another kind would only be reported as unknown.
     let head: toml::Table = text.parse().map_err(|error: toml::de::Error| as_text(error.into()))?;
-    if let Some(found) = head.get("kind").and_then(toml::Value::as_str)
+    if let Some(found) = kind_of(&head)
         && found != R::KIND
     {
         let found = quoted(found);

@@ -116,6 +116,19 @@ fn the_calibration_before_is_kept() {
 }
 
 #[test]
+fn a_calibration_of_another_kind_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    std::fs::write(&path, BEFORE).unwrap();
+    let message = write(&path, &record("A1")).unwrap_err().to_string();
+    assert!(message.contains("of kind \"gravity\", and one of kind \"correspondence\""), "{message}");
+    assert_eq!((std::fs::read_to_string(&path).unwrap().as_str(), previous(&path).exists()), (BEFORE, false));
+    std::fs::write(&path, "kind of a note").unwrap();
+    write(&path, &record("A1")).unwrap();
+    assert_eq!(std::fs::read_to_string(previous(&path)).unwrap(), "kind of a note");
+}
+
+#[test]
 fn a_refused_one_is_kept_only_under_a_name() {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path());

@@ -96,6 +96,7 @@ choice!(Baseline {
     2 => Passivity {},
     3 => Kalman {},
     4 => Autoregressive {},
+    5 => Increments {},
 });
 
 choice!(Prompt {

@@ -4,7 +4,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     calibration::frames::FrameSample,
     frames::{Wrench, WristSample},
-    impedance::{IdentificationReport, ImpedanceExcitation, MAX_DEGREE, Mode, ModeSet, SLOTS},
+    impedance::{
+        IdentificationFailures, IdentificationReport, IdentifiedDegrees, ImpedanceExcitation, MAX_DEGREE, Mode,
+        ModeSet, SLOTS,
+    },
     safety::{
         ChainSettings, EnergyMode, GATES, GateCounts, GateReport, Implausible, InterlockState, Reason, TransitionCause,
     },
@@ -103,20 +106,19 @@ record!(IdentificationReport {
     prediction_n: [Vector3<f64>; SLOTS],
     prediction_valid: [bool; SLOTS],
     reconstruction_n: [Vector3<f64>; MAX_DEGREE],
-    paper_degree: u8,
-    degree: u8,
-    matched_degree: u8,
-    nima_degree: u8,
+    degrees: IdentifiedDegrees,
     columns: u8,
     gain: f64,
     condition: f64,
     rank: u8,
     excitation: ImpedanceExcitation,
-    rejected: u64,
-    restarts: u64,
-    literal_failures: u64,
+    failures: IdentificationFailures,
     horizon_error_n: [f64; SLOTS],
 });
+
+record!(IdentifiedDegrees { paper: u8, anchored: u8, matched: u8, nima: u8 });
+
+record!(IdentificationFailures { samples: u64, restarts: u64, literal_solves: u64 });
 
 record!(ImpedanceExcitation { position_m: Vector3<f64>, velocity_m_s: Vector3<f64>, acceleration_m_s2: Vector3<f64> });
 

@@ -21,12 +21,16 @@ pub use parts::{JournalEnd, JournalStart};
 use crate::codec::CodecError;
 use parts::ByteWriter;
 
-/// Version of the journal that this program writes, and the only version that it reads.
+/// Version of the journal that this program writes.
 ///
-/// Version 5 contains the raw readings of the devices and the true time of each tick. It was introduced with other
-/// plausibility checks, another governor and unknown forces, so the replay of an older session would give other forces
+/// Version 6 has the format of version 5, which contains the raw readings of the devices and the true time of each tick.
+/// It was introduced when `best` began to hold forces that motion does not explain, when memories were shortened, and when
+/// wrong positions and gaps were bridged. A journal of version 5 is replayed without these changes
+/// ([`earlier_forces`](nima_core::impedance::ImpedanceSettings::earlier_forces)), because they would give other forces
 /// than the hand felt.
-pub const VERSION: u16 = 5;
+pub const VERSION: u16 = 6;
+/// The oldest version that is read.
+const OLDEST: u16 = 5;
 
 // A tick has a column for each mode and gate, and a number for each reason, so the journal's format depends on these
 // counts.
@@ -44,7 +48,7 @@ pub enum JournalError {
     #[error("it is not a journal of a session of this program")]
     Foreign,
     #[error(
-        "its journal has version {found}, but this program reads version {VERSION}, whose gates need readings that older journals lack; replay it with the program that recorded it"
+        "its journal has version {found}, but this program reads versions {OLDEST} and {VERSION}; replay it with the program that recorded it"
     )]
     Version { found: u16 },
     #[error("its content does not match its checksum: the file was changed or damaged")]
@@ -146,7 +150,7 @@ pub enum MessageOutline {
 /// # Errors
 /// The errors of [`decode`], except for ticks and calibrations, which are not read.
 pub fn outline(bytes: &[u8]) -> Result<MessageOutline, JournalError> {
-    let (_, kind, body) = opened(bytes)?;
+    let OpenedMessage { kind, body, .. } = opened(bytes)?;
     Ok(match kind {
         START => MessageOutline::Start,
         CALIBRATIONS => MessageOutline::Calibrations,
@@ -161,16 +165,21 @@ pub fn outline(bytes: &[u8]) -> Result<MessageOutline, JournalError> {
 /// # Errors
 /// The errors of [`decode`], except for the content, which is not read.
 pub fn number(bytes: &[u8]) -> Result<u64, JournalError> {
-    opened(bytes).map(|(number, ..)| number)
+    opened(bytes).map(|opened| opened.number)
 }
 
 /// # Errors
 /// [`JournalError`] if the bytes are not a message, or are damaged.
 pub fn decode(bytes: &[u8]) -> Result<(u64, JournalMessage), JournalError> {
-    let (number, kind, mut body) = opened(bytes)?;
+    let OpenedMessage { version, number, kind, mut body } = opened(bytes)?;
     let body = &mut body;
     let message = match kind {
-        START => JournalMessage::Start(JournalStart::take(body)?),
+        START => {
+            let mut start = JournalStart::take(body)?;
+            // A part of an older session that this version wrote again already has it.
+            start.origin.rig.identification.earlier_forces |= version < VERSION;
+            JournalMessage::Start(start)
+        }
         CALIBRATIONS => {
             let number = crate::codec::take_number(body)?;
             JournalMessage::Calibrations { number, calibrations: parts::take_calibrations(body)? }
@@ -182,20 +191,27 @@ pub fn decode(bytes: &[u8]) -> Result<(u64, JournalMessage), JournalError> {
     if body.is_empty() { Ok((number, message)) } else { Err(CodecError::Long.into()) }
 }
 
-/// Returns number, kind and body of a message.
-fn opened(bytes: &[u8]) -> Result<(u64, u8, &[u8]), JournalError> {
+/// A message whose checksum is correct.
+struct OpenedMessage<'a> {
+    version: u16,
+    number: u64,
+    kind: u8,
+    body: &'a [u8],
+}
+
+fn opened(bytes: &[u8]) -> Result<OpenedMessage<'_>, JournalError> {
     let (head, content) = bytes.split_at_checked(HEAD).ok_or(JournalError::Foreign)?;
     if head[..4] != MAGIC {
         return Err(JournalError::Foreign);
     }
     let found = u16::from_le_bytes([head[4], head[5]]);
-    if found != VERSION {
+    if !(OLDEST..=VERSION).contains(&found) {
         return Err(JournalError::Version { found });
     }
     if crc32fast::hash(content).to_le_bytes() != head[6..] {
         return Err(JournalError::Damaged);
     }
     let (number, rest) = content.split_first_chunk::<8>().ok_or(CodecError::Short)?;
-    let (kind, body) = rest.split_first().ok_or(CodecError::Short)?;
-    Ok((u64::from_le_bytes(*number), *kind, body))
+    let (&kind, body) = rest.split_first().ok_or(CodecError::Short)?;
+    Ok(OpenedMessage { version: found, number: u64::from_le_bytes(*number), kind, body })
 }

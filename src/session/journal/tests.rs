@@ -384,6 +384,22 @@ fn what_is_no_journal_of_this_version_is_named() {
 }
 
 #[test]
+fn a_journal_of_the_version_before_is_replayed_with_its_forces() {
+    let earlier = |bytes: &[u8]| {
+        let Ok((_, JournalMessage::Start(read))) = decode(bytes) else { panic!("no start") };
+        read.origin.rig.identification.earlier_forces
+    };
+    let mut bytes = JournalEncoder::default().start(&start()).unwrap();
+    assert!(!earlier(&bytes));
+    bytes[4] = 5;
+    assert!(earlier(&bytes));
+    let Ok((_, JournalMessage::Start(read))) = decode(&bytes) else { panic!("no start") };
+    assert!(earlier(&JournalEncoder::default().start(&read).unwrap()), "also after a part of it was written again");
+    bytes[4] = 4;
+    assert_eq!(decode(&bytes).unwrap_err(), JournalError::Version { found: 4 });
+}
+
+#[test]
 fn every_rig_comes_back_as_it_was() {
     for name in RigConfig::names() {
         let rig = RigConfig::load(name).unwrap();

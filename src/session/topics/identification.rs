@@ -76,10 +76,10 @@ impl IdentificationChannel {
         let degree = |is_made: bool, degree: u8| if is_made { f64::from(degree) } else { f64::NAN };
         self.plot.values.extend(errors_n);
         self.plot.values.extend([
-            degree(report.modes.contains(Mode::Anchored), report.degree),
-            degree(report.modes.contains(Mode::Matched), report.matched_degree),
-            degree(report.modes.contains(Mode::Nima), report.nima_degree),
-            degree(compares, report.paper_degree),
+            degree(report.modes.contains(Mode::Anchored), report.degrees.anchored),
+            degree(report.modes.contains(Mode::Matched), report.degrees.matched),
+            degree(report.modes.contains(Mode::Nima), report.degrees.nima),
+            degree(compares, report.degrees.paper),
             f64::from(u8::from(report.resting)),
         ]);
         self.plot.values.extend(std::mem::take(&mut self.network).values());

@@ -18,7 +18,7 @@ use super::{traces_plot::with_unit, traces_state::TracesState};
 /// Draws a switch for each plot, and the choice of units.
 pub(super) fn signals_ui(ui: &mut Ui, state: &mut TracesState) {
     let units = PlotUnits::of(ui.ctx());
-    for plot in TracePlot::ALL {
+    for plot in state.offered.plots() {
         let mut shown = state.plots.contains(plot);
         if ui.checkbox(&mut shown, text::traces::plot_entry(plot.name().get(), units.of_plot(plot).name)).changed() {
             state.plots = state.plots.toggled(plot);

@@ -38,6 +38,8 @@ pub struct TracesState {
     /// The side whose forces are shown.
     pub(super) side: Side,
     pub(super) plots: PlotSet,
+    /// The plots that can be chosen: of other programs' recordings, only those with known signals.
+    pub(super) offered: PlotSet,
     /// Lines that are not drawn, one bit per channel.
     pub(super) hidden: u32,
     /// Frames until the picture is taken: the menu that requested it must be gone.
@@ -58,6 +60,7 @@ impl Default for TracesState {
             step_s: 0.0,
             side: Side::Right,
             plots: PlotSet::default(),
+            offered: TracePlot::ALL.into_iter().collect(),
             hidden: 0,
             png_in: None,
         }
@@ -115,6 +118,12 @@ impl TracesState {
         if seconds.is_finite() {
             self.view_s = (-seconds.clamp(SHORTEST_S, LONGEST_S), 0.0);
         }
+    }
+
+    /// Offers and shows only these plots.
+    pub const fn offer(&mut self, plots: PlotSet) {
+        self.offered = plots;
+        self.plots = plots;
     }
 
     pub const fn side(&self) -> Side {

@@ -16,6 +16,7 @@ use nima_words::{report_text::newtons, text};
 use super::{
     Playback, SPEEDS,
     overview::{BUCKET_S, EventNote, Overview, OverviewBucket},
+    signals_view::known,
 };
 
 const HEAD: f32 = 54.0;
@@ -79,12 +80,15 @@ fn words_ui(ui: &mut Ui, past: &Playback, ink: Color32) {
         let name = past.path.file_name().unwrap_or_default().to_string_lossy();
         let when = past.about.map(|about| text::playback::when(about.begin_ns + (past.shown_s() * 1e9) as u64));
         let when = when.unwrap_or_else(|| text::playback::OPENING.get().to_owned());
-        line(ui, text::playback::of_session(&when, &name), theme::strong(16.0));
-        let alarm = past.live.as_ref().and_then(|live| judge(&live.signs(false, None)).into_iter().next());
+        // The date of another program's recording is not known.
+        let words = if past.is_foreign() { name.into_owned() } else { text::playback::of_session(&when, &name) };
+        line(ui, words, theme::strong(16.0));
+        let shown = past.live.as_ref().filter(|_| !past.is_foreign());
+        let alarm = shown.and_then(|live| judge(&live.signs(false, None)).into_iter().next());
         let words = match (&past.report.refused, alarm) {
             (Some(refused), _) => refused.clone(),
             (None, Some(alarm)) => text::playback::alarm_then(alarm.priority.word(), &alarm.cause),
-            (None, None) => extent(past).to_owned(),
+            (None, None) => past.signals.as_ref().map_or_else(|| extent(past).to_owned(), |signals| known(signals)),
         };
         line(ui, words, theme::regular(13.0));
     });
@@ -128,6 +132,7 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
             }
         }
     });
+    let blocked = past.is_foreign().then_some(text::playback::ONLY_SESSIONS.get());
     let end_s = past.about.map_or(0.0, |about| about.end_s);
     ui.add_space(6.0);
     let place = RichText::new(text::playback::position(past.shown_s(), end_s)).font(theme::strong(15.0));
@@ -138,18 +143,21 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
     ] {
         let set = past.stretch_s[at].is_some();
         let button = Button::selectable(set, name).frame_when_inactive(true).min_size(vec2(50.0, BUTTON));
-        if ui.add_enabled(past.live.is_some(), button).on_hover_text(meaning).clicked() {
+        let button = ui.add_enabled(past.live.is_some() && blocked.is_none(), button).on_hover_text(meaning);
+        if button.on_disabled_hover_text(blocked.unwrap_or(text::playback::OPENING.get())).clicked() {
             past.stretch_s[at] = Some(past.shown_s());
         }
     }
-    let free = past.job.is_none();
+    let free = past.job.is_none() && blocked.is_none();
     let save = Button::new(text::playback::SAVE).min_size(vec2(112.0, BUTTON));
     let save = ui.add_enabled(free && past.stretch_s().is_some(), save).on_hover_text(text::playback::SAVE_HOVER);
-    if save.on_disabled_hover_text(text::playback::SAVE_DISABLED_HOVER).clicked() {
+    if save.on_disabled_hover_text(blocked.unwrap_or(text::playback::SAVE_DISABLED_HOVER.get())).clicked() {
         past.save(&ctx);
     }
     let report = Button::new(text::playback::REPORT).min_size(vec2(64.0, BUTTON));
-    if ui.add_enabled(free, report).on_hover_text(text::playback::REPORT_HOVER).clicked() {
+    let report = ui.add_enabled(free, report).on_hover_text(text::playback::REPORT_HOVER);
+    let why = blocked.map(str::to_owned).or_else(|| past.report.job.clone()).unwrap_or_default();
+    if report.on_disabled_hover_text(why).clicked() {
         past.report(&ctx);
     }
     let other = past.beside.is_some();
@@ -161,14 +169,15 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
     }
     let fraction = past.read_share();
     let reading = (fraction < 0.999 && past.report.refused.is_none()).then(|| text::playback::read(fraction));
-    let words = past.report.job.clone().or_else(|| past.report.limited.clone()).or(reading);
+    let words = past.report.job.clone().or_else(|| past.report.trouble()).or(reading);
     if let Some(words) = words {
         // If the row has no room for it, the time line alone shows the reading progress.
         if ui.available_width() < MESSAGE {
             return;
         }
-        let font = fitting_style(ui, &words, &TextStyle::Small, ui.available_width());
-        ui.add(Label::new(weak(words.clone()).font(font)).truncate()).on_hover_text(words);
+        let first = words.lines().next().unwrap_or_default();
+        let font = fitting_style(ui, first, &TextStyle::Small, ui.available_width());
+        ui.add(Label::new(weak(first).font(font)).truncate()).on_hover_text(words);
     }
 }
 
@@ -235,8 +244,8 @@ fn point(past: &mut Playback, response: Response, strip: Rect, end_s: f64) {
     let lines: Vec<String> = notes.iter().take(6).map(|note| text::playback::at(note.t_s, &note.words)).collect();
     let bucket = past.overview.buckets.get((t_s / BUCKET_S) as usize).copied().unwrap_or_default();
     let words = if lines.is_empty() {
-        let measured = newtons(bucket.measured_n.map(f64::from), 2);
-        text::playback::largest(t_s, &measured, bucket.rendered_n)
+        let of = |force_n: Option<f32>| newtons(force_n.map(f64::from), 2);
+        text::playback::largest(t_s, &of(bucket.measured_n), &of(bucket.rendered_n))
     } else {
         lines.join("\n")
     };
@@ -259,8 +268,8 @@ fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
 
 /// Draws the maximum forces and the states, one column per point of the strip.
 fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64) {
-    let largest = |max: f32, one: &OverviewBucket| max.max(one.measured_n.unwrap_or_default()).max(one.rendered_n);
-    let largest_n = overview.buckets.iter().fold(0.5, largest);
+    let forces_n = overview.buckets.iter().flat_map(|one| [one.measured_n, one.rendered_n]).flatten();
+    let largest_n = forces_n.fold(0.5, f32::max);
     let room = strip.height() - STATES - MARKS - 2.0;
     let foot = strip.bottom() - STATES;
     let columns = strip.width() as usize;
@@ -278,8 +287,8 @@ fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64)
             painter.vline(x, top(measured_n)..=foot, Stroke::new(1.0, theme::now().measured.gamma_multiply(0.6)));
         }
         // Draw the rendered force as a line over the measured force, as in the traces.
-        if max.rendered_n > 0.0 {
-            let rendered = top(max.rendered_n);
+        if let Some(rendered_n) = max.rendered_n.filter(|rendered_n| *rendered_n > 0.0) {
+            let rendered = top(rendered_n);
             painter.vline(x, rendered - 1.0..=rendered + 1.0, Stroke::new(1.0, theme::now().rendered));
         }
         if let Some(state) = max.state {

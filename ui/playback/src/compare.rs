@@ -9,7 +9,7 @@ use nima_screen::{
 };
 use nima_words::text;
 
-use super::Playback;
+use super::{Playback, signals_ui};
 
 /// Fraction of the height for the traces.
 const TRACES: f32 = 0.46;
@@ -42,6 +42,9 @@ fn half_ui(ui: &mut Ui, past: &mut Playback, smooth: bool) {
         ui.centered_and_justified(|ui| ui.label(weak(words)));
         return;
     };
+    if past.signals.is_some() {
+        return signals_ui(ui, past);
+    }
     past.panels.scene.look = CameraLook::Free;
     past.panels.scene.figures = true;
     past.panels.scene.smooth = smooth;

@@ -1,11 +1,12 @@
 //! The ticks of a session from a start time: replayed, or from the recorded plots in its file.
 
-use std::{collections::BTreeMap, mem::discriminant};
+use std::{collections::BTreeMap, mem::discriminant, ops::Range};
 
 use nima_machine::{
-    messages::{Event, Tick, TickPositions},
+    messages::{Event, Tick, TickPositions, UNKNOWN_N},
     rig::{SIDES, Side},
 };
+use nima_recording::csv::Signals;
 use nima_session::{
     objects::ObjectStates,
     plot_channels::{self, PlottedError, PlottedTick},
@@ -13,7 +14,7 @@ use nima_session::{
 };
 use nima_words::{report_text::chain, text};
 
-use super::playback_file::PlaybackFile;
+use super::playback_file::{PlaybackContents, PlaybackFile};
 
 /// Recorded plots are read in segments of this length, s: about a chunk of the file.
 const STRETCH_S: f64 = 0.4;
@@ -28,6 +29,13 @@ pub(super) struct TickFrame {
     pub(super) ticks: [Option<Tick>; SIDES],
     /// The objects of the scene at that time, only in the last requested frame.
     pub(super) objects: Option<ObjectStates>,
+}
+
+impl TickFrame {
+    /// Creates the frame of recorded plots, without ticks.
+    const fn plotted(t_s: f64) -> Self {
+        Self { t_s, active: Vec::new(), events: Vec::new(), ticks: [None; SIDES], objects: None }
+    }
 }
 
 /// Source of ticks.
@@ -128,23 +136,46 @@ pub(super) fn plots(
     from_s: f64,
     to_s: f64,
 ) -> Result<Vec<TickFrame>, PlottedError> {
+    let recorded = match &file.contents {
+        PlaybackContents::Session(recorded) => recorded,
+        PlaybackContents::Signals(signals) => return Ok(rows(signals, like, &(from_s..to_s))),
+    };
     let mut frames: BTreeMap<u64, TickFrame> = BTreeMap::new();
     let times_ns = file.time_ns(from_s)..file.time_ns(to_s);
     for arm in &file.arms {
         let Some(like) = &like[arm.index()] else { continue };
-        plot_channels::each_tick(file.recorded.reader(), &file.path, *arm, times_ns.clone(), |plotted| {
-            let none = || TickFrame {
-                t_s: plotted.t_s,
-                active: Vec::new(),
-                events: Vec::new(),
-                ticks: [None; SIDES],
-                objects: None,
-            };
+        plot_channels::each_tick(recorded.reader(), &file.path, *arm, times_ns.clone(), |plotted| {
+            let none = || TickFrame::plotted(plotted.t_s);
             frames.entry(plotted.time_ns).or_insert_with(none).ticks[arm.index()] = Some(tick(like, *arm, &plotted));
             Ok::<_, PlottedError>(())
         })?;
     }
     Ok(frames.into_values().collect())
+}
+
+/// Returns the rows of another program's recording between these times, s, as ticks in which all other forces and positions
+/// are unknown.
+fn rows(signals: &Signals, like: &[Option<Tick>; SIDES], times_s: &Range<f64>) -> Vec<TickFrame> {
+    let Some(like) = &like[Side::Right.index()] else { return Vec::new() };
+    let from = signals.rows.partition_point(|row| row.t_s < times_s.start);
+    let between = signals.rows[from..].iter().take_while(|row| row.t_s < times_s.end);
+    let frames = between.map(|row| {
+        let plotted = PlottedTick {
+            time_ns: 0,
+            t_s: row.t_s,
+            tip_m: row.position_m,
+            leader_m: UNKNOWN_N,
+            measured_n: row.force_n,
+            delayed_n: UNKNOWN_N,
+            asked_n: UNKNOWN_N,
+            rendered_n: UNKNOWN_N,
+            state: like.state,
+        };
+        let mut frame = TickFrame::plotted(row.t_s);
+        frame.ticks[Side::Right.index()] = Some(tick(like, Side::Right, &plotted));
+        frame
+    });
+    frames.collect()
 }
 
 /// Returns a tick like this one, with all recorded plot values.

@@ -14,15 +14,20 @@ mod list_row;
 mod overview;
 mod playback_file;
 mod session_index;
+mod signals_view;
 #[cfg(test)]
 mod tests;
 mod worker;
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use egui::Context;
 use nima_machine::rig::{DeviceName, Side};
 use nima_panels::{roles::Panels, tiles::PanelTiles};
+use nima_recording::csv::Signals;
 use nima_screen::{live::LiveState, outbox::Outbox, scene3d::SceneView};
 use nima_wizards::active_calibrations::ActiveCalibrations;
 use nima_words::{report_text::side_word, text};
@@ -35,6 +40,7 @@ use self::{
 
 pub use bar::{FRAME, bar_ui, head_ui};
 pub use compare::both_ui;
+pub use signals_view::signals_ui;
 
 /// Playback speeds.
 const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
@@ -48,6 +54,8 @@ const SETTLED_S: f64 = 0.02;
 #[derive(Debug)]
 pub struct Playback {
     pub path: PathBuf,
+    /// The signals of another program's recording; `None`: a session.
+    signals: Option<Arc<Signals>>,
     worker: PastWorker,
     about: Option<OpenSessionInfo>,
     /// State for the views; `None` until the first moment is loaded.
@@ -97,18 +105,43 @@ struct OperatorLines {
     refused: Option<String>,
     /// Reason why a part is available only from the recorded plots.
     limited: Option<String>,
+    /// Missing data of the session, one line each.
+    lacks: Vec<String>,
     /// Result of the last report or excerpt.
     job: Option<String>,
+}
+
+impl OperatorLines {
+    /// Returns what is wrong with the session, the missing data first.
+    fn trouble(&self) -> Option<String> {
+        let lacks = self.lacks.iter().map(|line| text::playback::lacks(line));
+        let all: Vec<String> = lacks.chain(self.limited.clone()).collect();
+        (!all.is_empty()).then(|| all.join("\n"))
+    }
 }
 
 impl Playback {
     /// Opens a session at its start; `scene` draws the operating field.
     pub fn open(path: &Path, ctx: &Context, scene: SceneView) -> Self {
+        Self::open_any(path, None, ctx, scene)
+    }
+
+    /// Opens another program's recording at its end, so that all of it can be seen.
+    pub fn open_signals(path: &Path, signals: &Arc<Signals>, ctx: &Context) -> Self {
+        let end_s = signals.end_s();
+        let mut past = Self::open_any(path, Some(Arc::clone(signals)), ctx, SceneView::default());
+        signals_view::choose(signals, &mut past.panels.forces);
+        past.show(end_s);
+        past
+    }
+
+    fn open_any(path: &Path, signals: Option<Arc<Signals>>, ctx: &Context, scene: SceneView) -> Self {
         let wakes = ctx.clone();
-        let worker = PastWorker::start(path, move || wakes.request_repaint());
+        let worker = PastWorker::start(path, signals.clone(), move || wakes.request_repaint());
         worker.show(0.0);
         Self {
             path: path.to_path_buf(),
+            signals,
             worker,
             about: None,
             live: None,
@@ -207,6 +240,7 @@ impl Playback {
             WorkerAnswer::Refused(why) => self.report.refused = Some(text::playback::refused(&why)),
             WorkerAnswer::Read(part) => self.overview.add(part),
             WorkerAnswer::Limited(why) => self.report.limited = Some(text::playback::limited(&why)),
+            WorkerAnswer::Lacks(lines) => self.report.lacks = lines,
             // Ignore a moment that is no longer requested.
             WorkerAnswer::Shown(live, extent, t_s) if (t_s - self.wanted_s).abs() < 1e-9 => {
                 self.extent = extent;
@@ -266,6 +300,11 @@ impl Playback {
     /// Returns the fraction of the session that was read, 0 to 1.
     fn read_share(&self) -> f64 {
         self.about.map_or(0.0, |about| if about.end_s > 0.0 { self.overview.read_s / about.end_s } else { 1.0 })
+    }
+
+    /// Returns whether it was recorded by another program: only its signals are known.
+    pub const fn is_foreign(&self) -> bool {
+        self.signals.is_some()
     }
 
     pub fn refused(&self) -> Option<&str> {

@@ -19,7 +19,8 @@ pub(super) const BUCKET_S: f64 = 0.5;
 pub(super) struct OverviewBucket {
     /// `None` if the force was never known.
     pub(super) measured_n: Option<f32>,
-    pub(super) rendered_n: f32,
+    /// `None` if it was never known.
+    pub(super) rendered_n: Option<f32>,
     pub(super) state: Option<LoopState>,
 }
 
@@ -61,8 +62,8 @@ impl Overview {
         }
         for tick in frame.ticks.iter().flatten() {
             let state = Some(tick.state);
-            let measured_n = tick.known_n().map(|force_n| force_n.norm() as f32);
-            let rendered_n = tick.rendering.rendered_n.norm() as f32;
+            let [measured_n, rendered_n] =
+                [tick.measured_n, tick.rendering.rendered_n].map(|force_n| known_length(force_n.as_slice()));
             self.buckets[place].merge(&OverviewBucket { measured_n, rendered_n, state });
         }
         self.active.extend(frame.active.iter().map(|(side, number)| (frame.t_s, *side, *number)));
@@ -99,11 +100,16 @@ impl Overview {
     }
 }
 
+/// Returns the length of a force along the axes on which it is known: other programs record one or two axes.
+fn known_length(force_n: &[f64]) -> Option<f32> {
+    let known = force_n.iter().filter(|along_n| along_n.is_finite()).map(|along_n| along_n * along_n);
+    known.reduce(|sum, square| sum + square).map(|sum| sum.sqrt() as f32)
+}
+
 impl OverviewBucket {
-    /// `f32::max` ignores NaN.
     pub(super) fn merge(&mut self, other: &Self) {
         self.measured_n = self.measured_n.into_iter().chain(other.measured_n).reduce(f32::max);
-        self.rendered_n = self.rendered_n.max(other.rendered_n);
+        self.rendered_n = self.rendered_n.into_iter().chain(other.rendered_n).reduce(f32::max);
         self.state = self.state.into_iter().chain(other.state).max_by_key(|state| attention(*state));
     }
 }

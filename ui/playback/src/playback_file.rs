@@ -1,19 +1,25 @@
-//! The file of a recorded session: what it contains, and what can be read from it at any time.
+//! What playback reads: a session, or the signals of another program's recording.
 
-use std::path::{Path, PathBuf};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use nima_machine::{
-    config::RigConfig,
+    config::{ConfigError, EndoscopeConfig, RigConfig},
     messages::Tick,
-    rig::{SIDES, Side},
+    rig::{DeviceName, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
+use nima_recording::csv::Signals;
 use nima_session::{
-    file::RecordedFile,
+    file::{LogLine, RecordedFile},
     images,
     journal::JournalStart,
     objects::{self, ObjectStates},
     plot_channels,
+    replay::Keyframe,
 };
 use nima_simulation::scene::Scene;
 use nima_words::{
@@ -21,11 +27,11 @@ use nima_words::{
     text,
 };
 
-use super::overview::OverviewTables;
+use super::{feed::TickFeed, overview::OverviewTables};
 
 pub(super) struct PlaybackFile {
     pub(super) path: PathBuf,
-    pub(super) recorded: RecordedFile,
+    pub(super) contents: PlaybackContents,
     pub(super) begin_ns: u64,
     /// Time of its last message, s.
     pub(super) end_s: f64,
@@ -38,12 +44,26 @@ pub(super) struct PlaybackFile {
     /// Contains rings or jaws.
     has_objects: bool,
     /// Contains endoscope images.
-    pub(super) has_images: bool,
+    has_images: bool,
+}
+
+pub(super) enum PlaybackContents {
+    Session(RecordedFile),
+    /// Of another program: shown as signals of the right arm.
+    Signals(Arc<Signals>),
 }
 
 impl PlaybackFile {
-    /// Returns one line as error if the session cannot be shown at all.
-    pub(super) fn open(path: &Path) -> Result<Self, String> {
+    /// Opens a session, or shows the signals that were read from another recording. Returns one line as error if it cannot
+    /// be shown at all.
+    pub(super) fn open(path: &Path, signals: Option<Arc<Signals>>) -> Result<Self, String> {
+        match signals {
+            Some(signals) => Self::of_signals(path, signals).map_err(|error| quoted(&chain(&error))),
+            None => Self::of_session(path),
+        }
+    }
+
+    fn of_session(path: &Path) -> Result<Self, String> {
         let recorded = RecordedFile::open(path).map_err(|error| quoted(&chain(&error)))?;
         let begin_ns = plot_channels::beginning_ns(recorded.reader()).map_err(|error| quoted(&chain(&error)))?;
         let end_s = recorded.about().map_err(|error| quoted(&chain(&error)))?.seconds;
@@ -56,8 +76,46 @@ impl PlaybackFile {
         let arms = plot_channels::arms(recorded.reader());
         let has_objects = objects::are_shown(recorded.reader());
         let has_images = images::are_recorded(recorded.reader());
+        let contents = PlaybackContents::Session(recorded);
         let path = path.to_owned();
-        Ok(Self { path, recorded, begin_ns, end_s, arms, rig, scene, start, has_objects, has_images })
+        Ok(Self { path, contents, begin_ns, end_s, arms, rig, scene, start, has_objects, has_images })
+    }
+
+    /// The rig and the scene only complete the state of a window: nothing of them is shown.
+    fn of_signals(path: &Path, signals: Arc<Signals>) -> Result<Self, ConfigError> {
+        Ok(Self {
+            path: path.to_owned(),
+            begin_ns: 0,
+            end_s: signals.end_s(),
+            arms: vec![Side::Right],
+            rig: RigConfig::load("simulated")?,
+            scene: Scene::load("peg_transfer")?,
+            start: Err(text::playback::OF_ANOTHER_PROGRAM.get().to_owned()),
+            has_objects: false,
+            has_images: false,
+            contents: PlaybackContents::Signals(signals),
+        })
+    }
+
+    pub(super) const fn session(&self) -> Option<&RecordedFile> {
+        match &self.contents {
+            PlaybackContents::Session(recorded) => Some(recorded),
+            PlaybackContents::Signals(_) => None,
+        }
+    }
+
+    /// Returns the signals of another program's recording.
+    pub(super) fn signals(&self) -> Option<&Signals> {
+        match &self.contents {
+            PlaybackContents::Session(_) => None,
+            PlaybackContents::Signals(signals) => Some(signals),
+        }
+    }
+
+    /// Returns the replay from this loop on; `None` if it cannot be replayed.
+    pub(super) fn feed(&self, keyframe: &Keyframe) -> Option<TickFeed> {
+        let start = self.start.as_ref().ok()?;
+        Some(TickFeed::Replay(self.session()?.cursor(start, keyframe.clone(), self.begin_ns)))
     }
 
     pub(super) fn t_s(&self, time_ns: u64) -> f64 {
@@ -68,17 +126,31 @@ impl PlaybackFile {
         self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
     }
 
+    /// Returns the log between these times, ns; nothing if it cannot be read.
+    pub(super) fn log(&self, times_ns: Range<u64>) -> Vec<LogLine> {
+        self.session().and_then(|recorded| recorded.log(times_ns).ok()).unwrap_or_default()
+    }
+
     /// Returns the objects of the scene at this time, s; none if they are not recorded or cannot be read.
     pub(super) fn objects(&self, t_s: f64) -> Option<ObjectStates> {
-        let at = || objects::at(self.recorded.reader(), self.begin_ns, self.time_ns(t_s)).ok().flatten();
-        self.has_objects.then(at)?
+        let recorded = self.session().filter(|_| self.has_objects)?;
+        objects::at(recorded.reader(), self.begin_ns, self.time_ns(t_s)).ok().flatten()
     }
 
     /// Returns the tables of the activated calibrations.
     pub(super) fn calibrations(&self) -> OverviewTables {
-        let tables = self.recorded.reader().metadata().unwrap_or_default();
+        let tables = self.session().and_then(|recorded| recorded.reader().metadata().ok()).unwrap_or_default();
         let of = |name: &str| name.strip_prefix("calibrations ").map(str::to_owned);
         tables.into_iter().filter_map(|(name, table)| Some((of(&name)?, table))).collect()
+    }
+
+    pub(super) fn devices(&self) -> Vec<DeviceName> {
+        self.session().map(|_| self.rig.device_names()).unwrap_or_default()
+    }
+
+    /// Returns the endoscope whose images are in it.
+    pub(super) fn endoscope(&self) -> Option<EndoscopeConfig> {
+        self.has_images.then(|| self.rig.endoscope.clone().unwrap_or_default())
     }
 
     /// Returns a tick of each arm with unknown values only.

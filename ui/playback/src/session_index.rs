@@ -31,7 +31,7 @@ use super::{
 /// Length of the replay before a moment, s, so that traces and values have their history.
 const LEAD_S: f64 = 10.0;
 /// Traces reach back to this time before it, s.
-const TRACES_S: f64 = 120.0;
+pub(super) const TRACES_S: f64 = 120.0;
 /// Minimum time between keyframes, s; doubled whenever there are too many.
 const KEYFRAME_S: f64 = 1.5;
 /// Maximum number of stored keyframes: each is a whole loop, 17 MB with one arm and 27 MB with two.
@@ -104,13 +104,10 @@ impl<'a> SessionIndex<'a> {
             exact_s: 0.0,
             why: None,
         };
-        let first = file.start.as_ref().map_err(Clone::clone).and_then(|start| {
-            let first = Keyframe::first(start).map_err(|error| quoted(&chain(&error)))?;
-            Ok((start, first))
-        });
-        match first {
-            Ok((start, first)) => {
-                film.reading = Some(TickFeed::Replay(file.recorded.cursor(start, first.clone(), file.begin_ns)));
+        let start = file.start.as_ref().map_err(Clone::clone);
+        match start.and_then(|start| Keyframe::first(start).map_err(|error| quoted(&chain(&error)))) {
+            Ok(first) => {
+                film.reading = file.feed(&first);
                 film.keyframes.push(first);
             }
             Err(why) => film.why = Some(why),
@@ -167,7 +164,7 @@ impl<'a> SessionIndex<'a> {
         let times_ns = self.file.time_ns(self.log_s)..to_ns;
         self.log_s = self.read_s;
         // An unreadable log yields no entries; the replay or the plots report the damage.
-        let lines = self.file.recorded.log(times_ns).unwrap_or_default();
+        let lines = self.file.log(times_ns);
         let devices = self.file.rig.device_names();
         let note = |LogLine { time_ns, kind, words, value }| {
             let words = value.and_then(|value| WORDS.of(&value, &devices)).unwrap_or(words);
@@ -221,6 +218,9 @@ impl<'a> SessionIndex<'a> {
     /// Returns the state of the window before this time, s: traces and events.
     fn live(&self, t_s: f64) -> LiveState {
         let mut live = LiveState::of_past(self.file.rig.clone(), self.file.scene.clone());
+        if let Some(signals) = self.file.signals() {
+            live.history.iter_mut().for_each(|history| history.bridge(signals.gap_s()));
+        }
         live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);
         // Later marks are to the right of the traces.
         live.marks_s.extend(&self.marks_s);
@@ -251,12 +251,8 @@ impl<'a> SessionIndex<'a> {
     pub(super) fn chase(&self, to_s: f64) -> Chase {
         let from_s = (to_s - LEAD_S).max(0.0);
         let keyframe = self.keyframes.iter().rfind(|keyframe| keyframe.t_s() <= from_s);
-        let feed = match (keyframe, &self.file.start) {
-            (Some(keyframe), Ok(start)) if self.is_exact(to_s) => {
-                TickFeed::Replay(self.file.recorded.cursor(start, keyframe.clone(), self.file.begin_ns))
-            }
-            _ => TickFeed::Plots(from_s),
-        };
+        let replay = keyframe.filter(|_| self.is_exact(to_s)).and_then(|keyframe| self.file.feed(keyframe));
+        let feed = replay.unwrap_or(TickFeed::Plots(from_s));
         Chase { feed, live: self.live(from_s), like: self.like(from_s), from_s, to_s }
     }
 }

@@ -12,7 +12,9 @@ use std::{
 };
 
 use nima_machine::{config::EndoscopeConfig, rig::DeviceName};
+use nima_recording::csv::Signals;
 use nima_screen::live::LiveState;
+use nima_session::completeness::CompletenessCheck;
 use nima_words::language;
 
 use super::{
@@ -24,6 +26,8 @@ use super::{
 
 /// Interval of progress reports.
 const REPORT_EVERY: Duration = Duration::from_millis(60);
+/// The search for missing data leaves the thread to requests of the window after this time.
+const CHECK_TIME: Duration = Duration::from_millis(20);
 
 /// A request of the window.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +69,8 @@ pub(super) enum WorkerAnswer {
     Read(Overview),
     /// The rest is available only from the recorded plots, for this reason.
     Limited(String),
+    /// The session lacks this, one line each.
+    Lacks(Vec<String>),
     Shown(Box<LiveState>, WorkerExtent, f64),
     /// The moment, continued by these ticks; `None` at the end of the session.
     WentOn(Option<Vec<TickFrame>>),
@@ -80,8 +86,8 @@ pub(super) struct PastWorker {
 }
 
 impl PastWorker {
-    /// Opens a session; `wake` is called whenever there is an answer.
-    pub(super) fn start(path: &Path, wake: impl Fn() + Send + 'static) -> Self {
+    /// Opens a session, or the signals of another recording; `wake` is called whenever there is an answer.
+    pub(super) fn start(path: &Path, signals: Option<Arc<Signals>>, wake: impl Fn() + Send + 'static) -> Self {
         let (wishes, wanted) = channel();
         let (channel_end, answers) = channel();
         let path = path.to_path_buf();
@@ -89,7 +95,7 @@ impl PastWorker {
         let of_thread = Arc::clone(&gently);
         let work = move || {
             let sender = AnswerSender { answers: channel_end, wake: Box::new(wake), gently: of_thread };
-            if let Err(why) = run(&path, &wanted, &sender) {
+            if let Err(why) = run(&path, signals, &wanted, &sender) {
                 sender.notify(WorkerAnswer::Refused(why));
             }
         };
@@ -132,27 +138,37 @@ impl AnswerSender {
     }
 }
 
-fn run(path: &Path, wanted: &Receiver<WorkerRequest>, sender: &AnswerSender) -> Result<(), String> {
-    let file = PlaybackFile::open(path)?;
+fn run(
+    path: &Path,
+    signals: Option<Arc<Signals>>,
+    wanted: &Receiver<WorkerRequest>,
+    sender: &AnswerSender,
+) -> Result<(), String> {
+    let file = PlaybackFile::open(path, signals)?;
     let opened = SessionOverview {
         begin_ns: file.begin_ns,
         end_s: file.end_s,
         calibrations: file.calibrations(),
-        devices: file.rig.device_names(),
-        endoscope: file.has_images.then(|| file.rig.endoscope.clone().unwrap_or_default()),
+        devices: file.devices(),
+        endoscope: file.endoscope(),
     };
     sender.notify(WorkerAnswer::Opened(Box::new(opened)));
     let mut reading = FirstReading {
         part: Overview::default(),
         reported_at: Instant::now(),
         limited: false,
-        goes_on: true,
+        reads: true,
+        check: file.session().map(|recorded| CompletenessCheck::new(recorded.reader())),
         took: Duration::ZERO,
     };
     let mut film = SessionIndex::new(&file)?;
     let mut shown = DisplayedMoment::default();
+    // Signals are in memory: the first moment shown already has all its traces.
+    while reading.goes_on && file.signals().is_some() {
+        reading.go_on(&mut film, sender);
+    }
     loop {
-        let patience = match (&shown.chase, reading.goes_on) {
+        let patience = match (&shown.chase, reading.goes_on()) {
             (Some(_), _) => Some(Duration::ZERO),
             (None, true) => Some(reading.took),
             (None, false) => None,
@@ -196,29 +212,57 @@ fn newest(
     }
 }
 
-struct FirstReading {
+struct FirstReading<'a> {
     part: Overview,
     reported_at: Instant,
     limited: bool,
-    goes_on: bool,
+    reads: bool,
+    /// The search for missing data, after the reading; `None` when it has ended.
+    check: Option<CompletenessCheck<'a>>,
     /// Duration of the last step, if this computer drives a machine: an equally long pause follows.
     took: Duration,
 }
 
-impl FirstReading {
+impl FirstReading<'_> {
+    const fn goes_on(&self) -> bool {
+        self.reads || self.check.is_some()
+    }
+
     fn go_on(&mut self, film: &mut SessionIndex<'_>, sender: &AnswerSender) {
         let began = Instant::now();
-        self.goes_on = film.read(|frame| self.part.take(frame));
-        self.part.notes.extend(film.notes());
+        if self.reads {
+            self.read(film);
+        } else {
+            self.look_for_missing(sender);
+        }
         self.took = if sender.gently.load(Ordering::Relaxed) { began.elapsed() } else { Duration::ZERO };
         if let Some(why) = film.why.as_ref().filter(|_| !self.limited) {
             sender.notify(WorkerAnswer::Limited(why.clone()));
             self.limited = true;
         }
-        if !self.goes_on || self.reported_at.elapsed() > REPORT_EVERY {
+        if !self.reads || self.reported_at.elapsed() > REPORT_EVERY {
             self.part.read_s = film.read_s();
             sender.notify(WorkerAnswer::Read(std::mem::take(&mut self.part)));
             self.reported_at = Instant::now();
+        }
+    }
+
+    fn read(&mut self, film: &mut SessionIndex<'_>) {
+        self.reads = film.read(|frame| self.part.take(frame));
+        self.part.notes.extend(film.notes());
+    }
+
+    fn look_for_missing(&mut self, sender: &AnswerSender) {
+        let began = Instant::now();
+        let Some(check) = &mut self.check else { return };
+        while check.step() {
+            if began.elapsed() > CHECK_TIME {
+                return;
+            }
+        }
+        let missing = self.check.take().map(CompletenessCheck::finish).unwrap_or_default();
+        if !missing.is_empty() {
+            sender.notify(WorkerAnswer::Lacks(missing));
         }
     }
 }

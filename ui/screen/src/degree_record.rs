@@ -87,7 +87,7 @@ pub fn chosen_degree(tick: &Tick) -> u8 {
     let report = &tick.identification;
     match tick.mode {
         mode @ (Mode::Matched | Mode::Nima | Mode::Best) => report.degree_of(mode),
-        _ => report.degree,
+        _ => report.degrees.anchored,
     }
 }
 
@@ -117,9 +117,9 @@ impl DegreeRecord {
         let mut degrees = [None; RULES];
         degrees[DegreeRule::Console.index()] = Some(console);
         if is_compared {
-            degrees[DegreeRule::Paper.index()] = Some(report.paper_degree);
+            degrees[DegreeRule::Paper.index()] = Some(report.degrees.paper);
         }
-        if is_compared && report.paper_degree > 0 {
+        if is_compared && report.degrees.paper > 0 {
             for (axis, degree) in self.axis_degrees(&report.reconstruction_n, dt_s).into_iter().enumerate() {
                 degrees[DegreeRule::Axis(axis).index()] = Some(degree);
             }
@@ -190,7 +190,7 @@ mod tests {
             tick.t_s = f64::from(number) * 1e-3;
             let pressed = number >= 750;
             tick.measured_n = Vector3::z() * if pressed { 2.0 } else { 0.05 };
-            tick.identification.degree = if pressed { 3 } else { 0 };
+            tick.identification.degrees.anchored = if pressed { 3 } else { 0 };
             record.push(&tick, 1e-3);
         }
         let nonlinear = |in_contact| record.fractions(DegreeRule::Console, in_contact).unwrap().nonlinear();
@@ -204,7 +204,7 @@ mod tests {
     fn each_axis_has_the_degree_that_leaves_least() {
         let mut record = DegreeRecord::new(1000.0);
         let mut tick = a_tick();
-        tick.identification.paper_degree = 5;
+        tick.identification.degrees.paper = 5;
         tick.identification.reconstruction_n = [[1.0, 0.1, 0.5], [0.2, 0.3, 0.4], [0.3, 0.3, 0.1], [0.4; 3], [0.5; 3]]
             .map(|[x, y, z]| Vector3::new(x, y, z));
         record.push(&tick, 1e-3);

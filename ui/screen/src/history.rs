@@ -150,11 +150,12 @@ pub struct SignalHistory {
     levels: [HistoryLevel; SPANS_S.len()],
     began_s: Option<f64>,
     latest_s: f64,
+    gap_s: f64,
 }
 
 impl Default for SignalHistory {
     fn default() -> Self {
-        Self { levels: SPANS_S.map(HistoryLevel::new), began_s: None, latest_s: 0.0 }
+        Self { levels: SPANS_S.map(HistoryLevel::new), began_s: None, latest_s: 0.0, gap_s: GAP_S }
     }
 }
 
@@ -169,6 +170,11 @@ impl SignalHistory {
         for level in &mut self.levels {
             level.push(t_s, values);
         }
+    }
+
+    /// Also bridges longer intervals without samples, up to this one, s: for slow recordings.
+    pub const fn bridge(&mut self, gap_s: f64) {
+        self.gap_s = GAP_S.max(gap_s);
     }
 
     /// Returns the time of the newest sample, s.
@@ -202,7 +208,7 @@ impl SignalHistory {
                 break;
             }
             let Some((low, high)) = bucket.ends(channel) else { continue };
-            if begin_s - last_s > GAP_S + level.span_s {
+            if begin_s - last_s > self.gap_s + level.span_s {
                 trace.breaks.push(trace.points.len());
             }
             last_s = begin_s;

@@ -44,7 +44,7 @@ pub fn signals_of(tick: &Tick, before: Option<TipThen>) -> [f32; CHANNELS] {
         tick.gates.gain,
         tick.gates.governed,
         f64::from(chosen_degree(tick)),
-        if is_compared { f64::from(report.paper_degree) } else { f64::NAN },
+        if is_compared { f64::from(report.degrees.paper) } else { f64::NAN },
         tick.calibration.wrist.map_or(f64::NAN, |wrist| wrist.raw.torque_nm.norm() * 1e3),
     ]
     .map(|x| x as f32)
@@ -222,7 +222,13 @@ pub struct PlotSet(u16);
 
 impl Default for PlotSet {
     fn default() -> Self {
-        TracePlot::FORCES.into_iter().fold(Self(0), Self::toggled)
+        TracePlot::FORCES.into_iter().collect()
+    }
+}
+
+impl FromIterator<TracePlot> for PlotSet {
+    fn from_iter<I: IntoIterator<Item = TracePlot>>(plots: I) -> Self {
+        Self(plots.into_iter().fold(0, |set, plot| set | 1 << plot.index()))
     }
 }
 

@@ -1,7 +1,8 @@
-//! `nima console`: the window over a running loop.
+//! `nima console`: the window over a running loop; `nima view`: the same window with a recording.
 
 use std::{
     path::{Path, PathBuf},
+    sync::Arc,
     time::Duration,
 };
 
@@ -10,8 +11,13 @@ use clap::Args;
 use nima_calibrations::{WizardKind, active_calibrations::ActiveCalibrations};
 use nima_machine::config::SchedulingClass;
 use nima_panels::roles::Role;
+use nima_recording::{
+    bag,
+    csv::{ColumnMapping, Signals, read_signals},
+};
 use nima_report::output;
 use nima_screen::{link::Reopen, stderr::print_line};
+use nima_session::RecordingKind;
 use nima_simulation::SimulationPlan;
 use nima_words::language::Language;
 
@@ -76,7 +82,50 @@ pub(super) struct ConsoleArguments {
     stall: Option<f64>,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct ViewArguments {
+    /// A table (CSV), an MCAP file, the folder of a ROS 2 bag, or a recorded session
+    recording: PathBuf,
+    /// Column, or topic and field, of a force or a position: `fz=Fz*0.001`, `xyz=px_mm,py_mm,pz_mm*0.001`,
+    /// `fz=/ft/wrench.wrench.force.z`
+    #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
+    map: Vec<String>,
+    /// Language of the window: en or de
+    #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
+    language: Option<Language>,
+    /// Close after this many seconds
+    #[arg(long, visible_alias = "seconds", value_name = "S", value_parser = super::run::positive_seconds)]
+    exit_after: Option<f64>,
+    /// Save a screenshot (PNG) just before closing; needs --exit-after
+    #[arg(long, value_name = "FILE", requires = "exit_after")]
+    screenshot: Option<PathBuf>,
+}
+
+/// Shows a recording; the simulated rig behind it stays idle.
+pub(super) fn view(arguments: ViewArguments) -> anyhow::Result<()> {
+    let ViewArguments { recording, map, language, exit_after, screenshot } = arguments;
+    let mapping = ColumnMapping::parse(&map)?;
+    anyhow::ensure!(!mapping.names_leader(), "--map selects the leader's own motion, which is not shown: omit it");
+    let signals = match RecordingKind::of(&recording, !map.is_empty())? {
+        RecordingKind::Table => Some(read_signals(&recording, &mapping)?),
+        RecordingKind::Bag => Some(bag::read_signals(&recording, &mapping)?),
+        RecordingKind::Session if map.is_empty() => None,
+        RecordingKind::Session => anyhow::bail!(
+            "--map applies only to tables and other programs' recordings, and {} is a session: omit it",
+            recording.display()
+        ),
+    };
+    let session = Some(recording);
+    let console = ConsoleArguments { language, session, exit_after, screenshot, ..ConsoleArguments::default() };
+    open(&console, signals.map(Arc::new))
+}
+
 pub(super) fn run(arguments: &ConsoleArguments) -> anyhow::Result<()> {
+    open(arguments, None)
+}
+
+/// Opens the window; `signals`: of another program's recording that it shows.
+fn open(arguments: &ConsoleArguments, signals: Option<Arc<Signals>>) -> anyhow::Result<()> {
     if arguments.calibrate == Some(WizardKind::Camera) && extras::part(Extra::camera_wizard).is_none() {
         return Err(extras::not_built("calibration of the camera", "camera"));
     }
@@ -116,6 +165,7 @@ pub(super) fn run(arguments: &ConsoleArguments) -> anyhow::Result<()> {
         role: arguments.role,
         language: arguments.language,
         session: arguments.session.clone(),
+        signals,
         wizard: arguments.calibrate,
         summary: arguments.summary.clone(),
         frames: arguments.frames.clone(),

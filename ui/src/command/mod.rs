@@ -55,6 +55,8 @@ struct Cli {
 enum CliCommand {
     /// Open the console (also the default without a command)
     Console(console::ConsoleArguments),
+    /// Look at a recording of this or another program in playback; what it does not contain is unknown
+    View(console::ViewArguments),
     /// Run the control loop without a window, then print its timing and errors
     Run(run::RunArguments),
     /// Replay a recorded session through the same loop: compare every tick, or show the effect of other settings
@@ -151,6 +153,7 @@ fn run_own(given: &ArgMatches) -> anyhow::Result<()> {
     let command = extras::given(given).transpose()?;
     match command.unwrap_or_else(|| CliCommand::Console(console::ConsoleArguments::default())) {
         CliCommand::Console(arguments) => console::run(&arguments),
+        CliCommand::View(arguments) => console::view(arguments),
         CliCommand::Run(arguments) => run::run(&arguments),
         CliCommand::Replay(arguments) => replay::run(&arguments),
         CliCommand::Export(arguments) => export::run(&arguments),

@@ -19,11 +19,12 @@ pub mod start;
 mod top_bar;
 mod undo;
 
-use std::{path::PathBuf, time::Duration};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use app::StartedLoop;
 use nima_machine::config::RigConfig;
 use nima_panels::{rig_choice::RigChoice, settings::SettingsStore};
+use nima_recording::csv::Signals;
 use nima_screen::link::{LineConnection, Reopen};
 use nima_simulation::scene::Scene;
 use nima_words::language::{self, Language};
@@ -43,7 +44,10 @@ pub struct ConsoleOptions {
     pub images: Option<screenshots::ScreenshotFolder>,
     pub role: Option<nima_panels::roles::Role>,
     pub language: Option<Language>,
+    /// Recording that is shown at the start.
     pub session: Option<PathBuf>,
+    /// Its signals, if another program recorded it.
+    pub signals: Option<Arc<Signals>>,
     pub wizard: Option<nima_wizards::WizardKind>,
     pub summary: Option<PathBuf>,
     pub frames: Option<PathBuf>,

@@ -30,6 +30,7 @@ mod sessions;
 mod study;
 mod two_machines;
 mod user_study;
+mod view;
 
 /// Returns the one line of a failed command.
 fn one_line(output: &std::process::Output) -> String {

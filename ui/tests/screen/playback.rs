@@ -22,12 +22,15 @@ use nima_machine::{
     runtime::{self, Assembly, Operation, RuntimeClock, TapEnd, TapItem, TapPayload, tap},
 };
 use nima_panels::roles::Role;
-use nima_recording::session::SessionReader;
+use nima_recording::{
+    csv::{ColumnMapping, read_signals},
+    session::SessionReader,
+};
 use nima_session::objects;
 use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
-use crate::bench::{TIMEOUT, console_of, press, read, shows, toured, until, wait, write_into, write_over};
+use crate::bench::{TIMEOUT, can_press, console_of, press, read, shows, toured, until, wait, write_into, write_over};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
@@ -323,4 +326,21 @@ fn two_sessions_stand_side_by_side_on_one_clock() {
     }
     press(&mut harness, "Compare");
     assert!(harness.state().past_beside().is_none() && harness.state().past().is_some());
+}
+
+#[test]
+fn another_programs_recording_shows_what_it_has_and_offers_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("forces.csv");
+    let rows = (0..500).map(|number| format!("{},0.5,-1.25\n", f64::from(number) * 0.01));
+    std::fs::write(&path, std::iter::once("t_s,fx_n,fz_n\n".to_owned()).chain(rows).collect::<String>()).unwrap();
+    let signals = Arc::new(read_signals(&path, &ColumnMapping::default()).unwrap());
+    let mut harness = console_of("peg_transfer", [1280.0, 720.0], move |app| app.with_signals(&path, &signals));
+    read(&mut harness, "Force: x, z. Position: unknown. Everything else is unknown.");
+    read(&mut harness, "x 0.50 N   y \u{2013}   z -1.25 N");
+    assert!(shows(&harness, "x \u{2013}   y \u{2013}   z \u{2013}"), "no position is shown as zero");
+    assert!(!can_press(&harness, "Report") && !can_press(&harness, "From"));
+    assert_eq!(harness.query_all_by_label("Operating field").count(), 0, "its scene is not known");
+    press(&mut harness, "Signals");
+    assert!(shows(&harness, "Force along x") && !shows(&harness, "Force along y") && !shows(&harness, "Gates: gain"));
 }

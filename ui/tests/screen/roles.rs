@@ -110,21 +110,6 @@ fn a_new_user_is_welcomed_once_and_never_over_a_view_that_was_asked_for() {
 }
 
 #[test]
-fn the_page_of_rigs_replaces_the_welcome() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_path_buf();
-    let mut harness = console_of("free_motion", SIZE, move |app| app.with_settings(SettingsStore::open(&path)));
-    harness.run_steps(3);
-    assert!(harness.query_by_label("Continue with the simulated rig").is_some());
-    for _ in 0..2 {
-        harness.key_press(Key::F6);
-        harness.run_steps(3);
-    }
-    assert!(harness.query_by_label("Name of a new rig").is_none(), "the page is closed again");
-    assert!(harness.query_by_label("Continue with the simulated rig").is_none());
-}
-
-#[test]
 fn the_role_is_remembered() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_path_buf();

@@ -215,6 +215,19 @@ fn the_first_page_comes_once_and_not_over_another_page() {
 }
 
 #[test]
+fn the_first_page_is_closed_by_the_start_of_another_rig() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = newcomer(folder.path(), SIZE);
+    harness.key_press(Key::F6);
+    harness.step();
+    pick(&mut harness, "Two hands on soft tissue");
+    pick(&mut harness, "Start");
+    until_runs(&mut harness, "simulated", "bimanual");
+    harness.run_steps(3);
+    assert!(WAYS.iter().all(|(way, _)| harness.query_by_label(way).is_none()));
+}
+
+#[test]
 fn the_first_page_fits_the_smallest_window_below_the_stop() {
     let folder = tempfile::tempdir().unwrap();
     let size = [1100.0, 680.0];

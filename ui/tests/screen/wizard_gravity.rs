@@ -8,6 +8,7 @@ use std::{
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use nima_machine::{config::RigConfig, messages::ForceSource, rig::Prompt};
+use nima_panels::tiles::PanelId;
 use nima_simulation::{
     SimulationPlan,
     scene::{Flaw, Scene},
@@ -59,6 +60,7 @@ fn a_wizard_in_a_narrow_window_is_not_cut_off() {
     let folder = tempfile::tempdir().unwrap();
     let width = 940.0;
     let mut console = console_of_size(gravity_scene(None), folder.path(), [width, 1000.0]);
+    console.state_mut().settings_mut().layout.front.insert(0, PanelId::Calibrations);
     pick(&mut console, "Calibrate gravity…");
     wait(&mut console, "the checks", |c| shows(c, "Step 1 of 5"));
     leave_the_checks(&mut console);

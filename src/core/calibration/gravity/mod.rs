@@ -4,7 +4,8 @@
 //! the gravity vector `u` (m/s^2, pointing down) in the frame of the orientation source. That source is either the
 //! accelerometer (`u = -a`, frame `imu`, `R = s1_from_imu`) or the arm (`u = s1_from_world * (0, 0, -g)`, frame `s1`,
 //! `R` near the identity). The accelerometer's reading is not normalised, so that its constant bias becomes part of
-//! `f0`. Drift of the sensor after the calibration is not covered; the drift check detects it.
+//! `f0`. A drift of the bias over the poses is fitted and removed; `f0` is the bias of the last pose. Drift after the
+//! calibration is not covered; the drift check detects it.
 //!
 //! Three models are fitted to the same still poses and compared on held-out poses: the physical one above, one with a
 //! free 3x3 gain instead of `m R`, and the paper's, linear in sine and cosine of roll and pitch.

@@ -37,6 +37,8 @@ impl GravityPose {
 pub(super) struct GravityRow {
     pub(super) field_m_s2: Vector3<f64>,
     pub(super) wrench: Wrench,
+    /// Place in the order of recording, from -1 to 1.
+    pub(super) place: f64,
 }
 
 /// Interpretations of an orientation; all but `AsGiven` are common mistakes.
@@ -58,7 +60,10 @@ pub(super) fn rows(poses: &[GravityPose], imu_sign: i8, reading: OrientationRead
             arm_field_m_s2(&world_from_s1.inverse())
         }
     };
-    poses.iter().map(|pose| GravityRow { field_m_s2: field(pose), wrench: pose.wrench }).collect()
+    let place = |i: usize| 2.0 * i as f64 / (poses.len() - 1).max(1) as f64 - 1.0;
+    let row =
+        |(i, pose): (usize, &GravityPose)| GravityRow { field_m_s2: field(pose), wrench: pose.wrench, place: place(i) };
+    poses.iter().enumerate().map(row).collect()
 }
 
 /// Refuses invalid poses; returns their common source.

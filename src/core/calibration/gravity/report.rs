@@ -110,6 +110,9 @@ pub struct GravityReport {
     /// Centre of mass of the tool in `s1`, m.
     pub com_m: Option<[f64; 3]>,
     pub folds: usize,
+    /// Change of the bias from the first pose to the last, N, if the poses disagree because of it. It is removed from the
+    /// poses: the models have the bias of the last pose.
+    pub drift_n: Option<f64>,
     pub fits: Vec<ModelFit>,
 }
 

@@ -23,7 +23,7 @@ pub(super) fn solve(kind: ModelKind, rows: &[GravityRow], has_torque: bool) -> O
 
 /// Solves `A X = B` in the least-squares sense by singular value decomposition, equivalent to the paper's
 /// pseudo-inverse.
-fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let svd = a.try_svd(true, true, f64::EPSILON, 200)?;
     // Relative to the largest value, so that units do not matter.
     let cut = svd.singular_values.max() * RANK_FRACTION;
@@ -31,8 +31,12 @@ fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     solution.iter().all(|x| x.is_finite()).then_some(solution)
 }
 
-fn forces(rows: &[GravityRow]) -> DMatrix<f64> {
+pub(super) fn forces(rows: &[GravityRow]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 3, |i, j| rows[i].wrench.force_n[j])
+}
+
+pub(super) fn torques(rows: &[GravityRow]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), 3, |i, j| rows[i].wrench.torque_nm[j])
 }
 
 /// Solves for mass, rotation and bias: Wahba's problem with a scale (Umeyama 1991), on rows with their means
@@ -116,12 +120,7 @@ fn paper(rows: &[GravityRow], has_torque: bool) -> Option<GravityParameters> {
     let by_axis = |solution: DMatrix<f64>| -> [[f64; 5]; 3] {
         std::array::from_fn(|axis| std::array::from_fn(|c| solution[(c, axis)]))
     };
-    let torque_nm = if has_torque {
-        let torques = DMatrix::from_fn(rows.len(), 3, |i, j| rows[i].wrench.torque_nm[j]);
-        Some(by_axis(least_squares(a.clone(), &torques)?))
-    } else {
-        None
-    };
+    let torque_nm = if has_torque { Some(by_axis(least_squares(a.clone(), &torques(rows))?)) } else { None };
     Some(GravityParameters::Paper { force_n: by_axis(least_squares(a, &forces(rows))?), torque_nm })
 }
 

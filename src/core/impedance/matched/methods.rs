@@ -33,11 +33,11 @@ impl RenderingMethod for MatchedMethod {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.matched_degree
+        report.degrees.matched
     }
 
     fn note(models: &Models, report: &mut IdentificationReport) {
-        report.matched_degree = models.matched.degree;
+        report.degrees.matched = models.matched.degree;
     }
 }
 
@@ -72,11 +72,11 @@ impl RenderingMethod for Nima {
     }
 
     fn degree(report: &IdentificationReport) -> u8 {
-        report.nima_degree
+        report.degrees.nima
     }
 
     fn note(models: &Models, report: &mut IdentificationReport) {
-        report.nima_degree = models.nima.degree;
+        report.degrees.nima = models.nima.degree;
     }
 }
 

@@ -42,13 +42,17 @@ use super::{
     messages::{IdentificationReport, LinkPacket, Posture},
     method::{FollowerEnd, MethodInput},
     motion_clock::newest_fraction,
-    settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
+    settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet, OwnMotion},
 };
 use crate::signal::{DelayLine, Lanes};
 
 /// Memories of the fit (s of the motion clock). The longer one, for friction across the contact, includes the tissue of
 /// earlier touches. The paper's form uses its window instead.
-const MEMORIES_S: [f64; 2] = [1.0, 10.0];
+const MEMORY_S: f64 = 0.7;
+const LONG_S: f64 = 10.0;
+/// Memory for a force of the handle's own motion, because parameters that change sooner would give the hand power, and for
+/// sessions with an earlier journal.
+const STEADY_S: f64 = 1.0;
 /// Ridges, in seconds of typical motion without force, each with its memory. The last is for forms with slip columns.
 const RIDGES: [Ridge; 3] =
     [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
@@ -114,10 +118,12 @@ impl Learner {
         // At least one tick: a slow loop solves in every tick.
         let every = ((rate_hz / solve_hz).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
+        let is_steady = settings.earlier_forces || settings.own_motion == OwnMotion::Handle;
+        let memory_s = if is_steady { STEADY_S } else { MEMORY_S };
         let memories_s = match form {
             ModelForm::Paper(_) => &[settings.window_s][..],
-            ModelForm::Sliding | ModelForm::Coupled => &MEMORIES_S,
-            ModelForm::Tissue => &MEMORIES_S[..1],
+            ModelForm::Sliding | ModelForm::Coupled => &[memory_s, LONG_S][..],
+            ModelForm::Tissue => &[memory_s][..],
         };
         let sums = memories_s
             .iter()
@@ -348,10 +354,10 @@ impl FollowerEnd for Learner {
         let measured = if is_paper { seen.usable } else { seen.good };
         let model = *self.step(seen.posture, measured.then_some(seen.force_n), sent);
         if is_paper {
-            report.nima_degree = model.degree;
+            report.degrees.nima = model.degree;
             parcel.models.nima = model;
         } else {
-            report.matched_degree = model.degree;
+            report.degrees.matched = model.degree;
             parcel.models.matched = model;
         }
     }

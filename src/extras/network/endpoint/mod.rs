@@ -55,7 +55,7 @@ const ALIVE_WAITING_S: f64 = 0.05;
 const CONFIRM_S: f64 = 3.0;
 /// A console that has received nothing for this long starts a new session in addition to the old one, s.
 const SEEK_AFTER_S: f64 = 0.5;
-/// A clock jump and a refusal are reported for this long, s.
+/// A clock jump or a flood, and a refusal, are reported for this long, s.
 const REPORTED_S: f64 = 1.0;
 const REFUSED_REPORTED_S: f64 = 5.0;
 /// Number of goodbyes sent, because datagrams may be lost.
@@ -87,6 +87,8 @@ pub struct Endpoint {
     is_closed: bool,
     jumped: Option<(f64, f64)>,
     refused: Option<(f64, SessionRefusal)>,
+    /// Last time that the socket held more than is read in one call, most of it from others, s.
+    flooded_s: Option<f64>,
     buffer: [u8; 2 * DATAGRAM_MAX],
     out: [u8; DATAGRAM_MAX],
 }
@@ -133,6 +135,7 @@ impl Endpoint {
             is_closed: false,
             jumped: None,
             refused: None,
+            flooded_s: None,
             buffer: [0; 2 * DATAGRAM_MAX],
             out: [0; DATAGRAM_MAX],
         })
@@ -185,13 +188,15 @@ impl Endpoint {
     pub fn state(&self) -> LinkState {
         let silent_s = self.received_s.map(|received_s| self.now_s - received_s);
         let recent = |at_s: f64, reported_s: f64| self.now_s - at_s <= reported_s;
+        let is_flooded = self.flooded_s.is_some_and(|at_s| recent(at_s, REPORTED_S));
+        let silent = |for_s: f64| if is_flooded { LinkCause::Flooded } else { LinkCause::Silent { for_s } };
         let Some(session) = self.session() else {
             return match (self.refused, silent_s) {
                 (Some((at_s, refusal)), _) if recent(at_s, REFUSED_REPORTED_S) => {
                     LinkState::Down(LinkCause::Refused(refusal))
                 }
                 _ if self.is_closed => LinkState::Down(LinkCause::PeerClosed),
-                (_, Some(for_s)) => LinkState::Down(LinkCause::Silent { for_s }),
+                (_, Some(for_s)) => LinkState::Down(silent(for_s)),
                 _ => LinkState::Waiting,
             };
         };
@@ -202,7 +207,7 @@ impl Endpoint {
                 Some((at_s, refusal)) if recent(at_s, REFUSED_REPORTED_S) => {
                     LinkState::Down(LinkCause::Refused(refusal))
                 }
-                _ => LinkState::Down(LinkCause::Silent { for_s }),
+                _ => LinkState::Down(silent(for_s)),
             };
         }
         match (self.jumped, self.standing()) {

@@ -10,9 +10,13 @@ use crate::{
 
 impl Endpoint {
     pub(super) fn receive(&mut self) {
+        let before = self.dropped().total();
         for _ in 0..RECEIVE_MAX {
             let Some(arrival) = self.socket.receive(&mut self.buffer) else { return };
             self.take(arrival);
+        }
+        if self.dropped().total() - before > RECEIVE_MAX as u64 / 2 {
+            self.flooded_s = Some(self.now_s);
         }
     }
 

@@ -306,55 +306,6 @@ fn a_clock_that_jumps_is_named() {
 
 #[test]
 #[ignore = "real time: ./dev test runs it beside the wires"]
-fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
-    let _alone = alone();
-    judged(|| {
-        let (time, mut far, mut near, ..) = pair();
-        let address = far.endpoint.address().unwrap();
-        let number = far.endpoint.session().map(|session| session.ours).unwrap();
-        let ends = AtomicBool::new(false);
-        let sent = scope(|scope| {
-            let flood = scope.spawn(|| {
-                let sockets: Vec<UdpSocket> = (0..16).map(|_| UdpSocket::bind(HOME).unwrap()).collect();
-                let mut rng = fastrand::Rng::with_seed(1);
-                let mut sent = 0_u64;
-                while !ends.load(Relaxed) {
-                    // 20 000 per second.
-                    for _ in 0..20 {
-                        let mut datagram = [0; HELLO_LEN];
-                        let kind = if rng.bool() { DatagramKind::Hello } else { DatagramKind::Initiation };
-                        datagram[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, rng.u64(..)));
-                        // Some look like datagrams of a session, and some of these like the open one.
-                        if rng.u32(..4) == 0 {
-                            let session = if rng.u32(..8) == 0 { number } else { rng.u32(..) };
-                            datagram[..wire::OUTER_LEN].copy_from_slice(&wire::outer(session, rng.u64(..)));
-                        }
-                        sent += u64::from(sockets[rng.usize(..16)].send_to(&datagram, address).is_ok());
-                    }
-                    sleep(TICK);
-                }
-                sent
-            });
-            time.run(&mut [&mut far, &mut near], 1.5);
-            ends.store(true, Relaxed);
-            flood.join().unwrap()
-        });
-        time.run(&mut [&mut far, &mut near], 0.2);
-        assert!(are_open(&[&mut far, &mut near]));
-        let dropped = far.endpoint.dropped();
-        let figures = far.endpoint.figures();
-        assert!(
-            dropped.flooded + dropped.refused > sent / 4 && dropped.unknown_session > sent / 8,
-            "{dropped:?} of {sent}"
-        );
-        assert!(dropped.forged > 100, "{dropped:?}");
-        assert!(figures.counts.lost < 20 && figures.counts.delivered > 800, "{:?}", figures.counts);
-        assert_eq!(far.endpoint.sessions.iter().flatten().count(), 1, "no state");
-    });
-}
-
-#[test]
-#[ignore = "real time: ./dev test runs it beside the wires"]
 fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
     let _alone = alone();
     judged(|| {
@@ -390,5 +341,7 @@ fn a_relay_makes_the_line_bad_and_repeated_datagrams_are_dropped() {
     });
 }
 
+#[path = "flood_tests.rs"]
+mod flood_tests;
 #[path = "same_key_tests.rs"]
 mod same_key_tests;

@@ -14,7 +14,7 @@ use nima_core::frames::Wrench;
 #[cfg(target_os = "linux")]
 use nima_devices::PedalReading;
 use nima_devices::{ForceReading, TrackedTool, bota, dynamixel, force_dimension, hid, kinova, ndi};
-use nima_machine::rig::{ArmSet, EndoscopeSettings, RigSettings, SIDES, SensorSettings, Side};
+use nima_machine::rig::{ArmSet, EndoscopeSettings, FollowerSettings, RigSettings, SIDES, SensorSettings, Side};
 
 use super::{EmulatedDevice, EmulatedRigError, SharedWorld, SideWorld, addresses};
 use crate::emulators::{self, EmulatedFault, Emulator, FaultSwitch};
@@ -96,19 +96,30 @@ fn handle(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
 
 fn arm(side: Side, set: &ArmSet, shared: &SharedWorld) -> ServedDevices {
     let name = format!("{} arm", side.word());
-    let Some(chosen) = set.arm.kinova() else {
-        return Err(EmulatedRigError::Make { device: name });
-    };
-    let kinova::KinovaSettings { host, tcp_port, udp_port, serial_number, user, password, .. } = chosen.clone();
-    addresses::local(&name, &host)?;
     let model = set.model().map_err(|source| EmulatedRigError::Mount { device: name.clone(), source })?;
-    let joints = model.joints() as u32;
-    let usual = emulators::kinova::EmulatedKinova::default();
-    let serial = serial_number.unwrap_or_else(|| format!("EMULATED-{}", 1 + side.index()));
-    let emulated = emulators::kinova::EmulatedKinova { user, password, serial, joints, tcp_port, udp_port, ..usual };
+    let joints = model.joints();
+    let usual_serial = format!("EMULATED-{}", 1 + side.index());
     let world = shared.clone();
     let body = move |_: f64, asked: &_| world.with(|side, now_s| side.ask(now_s, asked));
-    served(name, emulated.with(body))
+    match set.arm.clone() {
+        FollowerSettings::Kinova(chosen) => {
+            let kinova::KinovaSettings { host, tcp_port, udp_port, serial_number, user, password, .. } = chosen;
+            addresses::local(&name, &host)?;
+            let usual = emulators::kinova::EmulatedKinova::default();
+            let serial = serial_number.unwrap_or(usual_serial);
+            let joints = joints as u32;
+            let emulated =
+                emulators::kinova::EmulatedKinova { user, password, serial, joints, tcp_port, udp_port, ..usual };
+            served(name, emulated.with(body))
+        }
+        FollowerSettings::External(chosen) => {
+            addresses::local(&name, &chosen.listen.ip().to_string())?;
+            let serial = chosen.serial_number.unwrap_or(usual_serial);
+            let emulated = emulators::external::EmulatedExternalArm { listen: chosen.listen, joints, serial };
+            served(name, emulated.with(body))
+        }
+        FollowerSettings::Simulated(_) => Err(EmulatedRigError::Make { device: name }),
+    }
 }
 
 fn sensor(

@@ -173,7 +173,7 @@ impl SideWorld {
                 (Wrench { force_n: s1_from_world * tip_n, torque_nm: Vector3::zeros() }, None)
             }
         };
-        let more = self.flawed.wrench(now_s, self.body.joint_rad[ARM_JOINTS - 1]);
+        let more = self.flawed.wrench(now_s, self.body.joint_rad[self.arm.model().joints() - 1]);
         ForceReading {
             wrench: Wrench { force_n: wrench.force_n + more.force_n, torque_nm: wrench.torque_nm + more.torque_nm },
             acceleration_m_s2: Some(self.flawed.askew() * measured.unwrap_or(support)),

@@ -11,6 +11,7 @@ pub mod ati;
 pub mod bota;
 pub mod dynamixel;
 pub mod endoscope;
+pub mod external;
 mod faults;
 pub mod force_dimension;
 pub mod haply;
@@ -47,6 +48,7 @@ pub const ALONE: &[(&str, StandaloneMaker)] = &[
     ("bota-socket", |settings| bota::standalone::sensor(Transport::Socket, settings)),
     ("dynamixel", dynamixel::standalone::bus),
     ("endoscope", endoscope::standalone::endoscope),
+    ("external-arm", external::standalone::arm),
     ("force-dimension", force_dimension::standalone::handle),
     ("haply", haply::standalone::handle),
     ("kinova", kinova::standalone::arm),

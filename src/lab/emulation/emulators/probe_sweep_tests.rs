@@ -4,11 +4,13 @@
 
 use std::time::{Duration, Instant};
 
+use nima_core::kinematics::ArmModel;
 use nima_devices::{
     Device, DeviceError,
     ati::{AtiDriver, AtiSettings},
     bota::{BotaDriver, BotaSettings, Transport},
     discovery::{TIMEOUT, TestOutcome, diagnose, probe_named},
+    external::{ExternalArm, ExternalSettings},
     haply::{HaplyDriver, HaplySettings},
     hid::{CapDriver, CapSettings, PedalDriver, PedalSettings},
     kinova::{self, KinovaSettings},
@@ -46,11 +48,14 @@ fn ndi(settings: NdiSettings) -> bool {
 /// Name of the emulator, name of the probe, and what a rig makes of the device at a place.
 type Kind = (&'static str, &'static str, fn(&str) -> bool);
 
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 11] = [
     ("ati", "ati", |place| works(AtiDriver::open(&AtiSettings::at(place).unwrap()), true)),
     ("bota-gen0", "bota-gen0", |place| bota(Transport::Gen0, place)),
     ("bota-gen-a", "bota-gen-a", |place| bota(Transport::GenA, place)),
     ("bota-socket", "bota-socket", |place| bota(Transport::Socket, place)),
+    ("external-arm", "external-arm", |place| {
+        works(ExternalArm::open(&ExternalSettings::at(place.parse().unwrap()), &ArmModel::GEN3), true)
+    }),
     ("haply", "haply", |place| works(HaplyDriver::open(&HaplySettings::at(place)), true)),
     ("kinova", "kinova", |place| works(kinova::open(&KinovaSettings::at(place).unwrap()), true)),
     ("ndi", "ndi", |place| ndi(NdiSettings { address: Some(place.to_owned()), ..NdiSettings::default() })),

@@ -6,7 +6,7 @@ use nima_core::impedance::{Identifier, ImpedanceSettings, Mode, ModeSet};
 use super::{BaselineRow, BaselinesError, OWN, Split, modes};
 use crate::tradeoff::TradeoffSource;
 
-/// Returns the measures every mode on this source at this delay.
+/// Measures every mode on this source at this delay.
 pub(super) fn measure(
     source: &TradeoffSource,
     split: Split,
@@ -64,7 +64,8 @@ pub(super) fn measure(
         BaselineRow {
             source: name(),
             split,
-            delay_ms: tidy(delay_ms),
+            delay_ms: tidy(delay_s * 1e3),
+            used_delay_ms: tidy(delay_ms),
             mode,
             error,
             held_error,

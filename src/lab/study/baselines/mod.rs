@@ -81,7 +81,10 @@ pub struct BaselineOptions {
 pub struct BaselineRow {
     pub source: String,
     pub split: Split,
+    /// The requested delay.
     pub delay_ms: f64,
+    /// The delay in whole samples of the source.
+    pub used_delay_ms: f64,
     pub mode: Mode,
     /// Mean prediction error at the horizon, in the unit of the source.
     pub error: f64,

@@ -11,7 +11,7 @@ impl Findings for BaselineReport {
         // Writing into a String cannot fail.
         let mut text = format!(
             "Mean error at the horizon over that of delayed reflection, start-up included; less is better, 1 is reflection.\n\
-             In brackets: {}.\n\
+             In brackets: {}. Each delay is rounded to whole samples of a source.\n\
              Held-out split: constants of all modes were chosen on the recordings whose names begin with {}; all other recordings are held out.\n",
             self.interval,
             CHOSEN_ON.join(" or "),
@@ -60,10 +60,11 @@ impl BaselineReport {
 
     /// Returns each source separately, as CSV.
     fn csv(&self) -> String {
-        let mut text = "source,split,delay_ms,mode,error,held_error,ratio\n".to_owned();
-        for BaselineRow { source, split, delay_ms, mode, error, held_error, ratio } in &self.rows {
+        let mut text = "source,split,delay_ms,used_delay_ms,mode,error,held_error,ratio\n".to_owned();
+        for BaselineRow { source, split, delay_ms, used_delay_ms, mode, error, held_error, ratio } in &self.rows {
             let source = source.replace(['"', ',', '\n'], " ");
-            writeln!(text, "{source},{},{delay_ms},{mode},{error:.6},{held_error:.6},{ratio:.4}", key(*split)).ok();
+            write!(text, "{source},{},{delay_ms},{used_delay_ms},{mode},", key(*split)).ok();
+            writeln!(text, "{error:.6},{held_error:.6},{ratio:.4}").ok();
         }
         text
     }

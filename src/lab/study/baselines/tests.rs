@@ -23,7 +23,7 @@ fn scenes(names: &[&str], seconds: f64, delays_s: &[f64]) -> BaselineOptions {
 fn a_scene_gives_every_mode_a_figure_and_the_same_one_again() {
     let options = scenes(&["peg_transfer"], 3.0, &[0.01, 0.05]);
     let report = options.run(&mut |_, _, _| {}).unwrap();
-    assert_eq!(report.rows.len(), 2 * 10);
+    assert_eq!(report.rows.len(), 2 * (5 + Mode::BASELINES.len()));
     assert!(report.rows.iter().all(|row| row.ratio.is_finite() && row.ratio > 0.0), "{report:?}");
     for row in report.rows.iter().filter(|row| row.mode == Mode::Dfr) {
         assert!((row.ratio - 1.0).abs() < 1e-12, "reflection is what everything is compared with: {row:?}");
@@ -34,6 +34,19 @@ fn a_scene_gives_every_mode_a_figure_and_the_same_one_again() {
         assert!(text.contains(&format!("| {mode} |")), "{text}");
     }
     assert_eq!(report.files()[1].1.lines().count(), 1 + report.rows.len());
+}
+
+#[test]
+fn sources_of_different_rates_share_a_column() {
+    let scene = Scene::load("peg_transfer").unwrap();
+    let source = |rate_hz| (TradeoffSource::from_scene(&scene, rate_hz, 3.0), Split::Scene);
+    let sources = vec![source(1000.0), source(66.0)];
+    let options = BaselineOptions { sources, delays_s: vec![0.05], cross_talk: false, inputs: Vec::new() };
+    let report = options.run(&mut |_, _, _| {}).unwrap();
+    assert!(report.means.iter().all(|mean| mean.sources == 2), "{:?}", report.means);
+    assert!(report.text().contains("| mode | 50 ms |\n"), "{}", report.text());
+    let used_ms: Vec<f64> = report.rows.iter().map(|row| row.used_delay_ms).collect();
+    assert!(used_ms.iter().any(|ms| (ms - 45.4545).abs() < 0.01), "three samples at 66 Hz: {used_ms:?}");
 }
 
 #[test]

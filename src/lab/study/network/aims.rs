@@ -88,7 +88,7 @@ pub(super) fn aims(rows: &[&NetworkRow], judged: Mode) -> Vec<StudyAim> {
         StudyAim::over("step of the tip on return, mm", RETURN_MM, all(), |row| row.return_step_mm),
         StudyAim::over("machines that resumed without a command", 0.0, all(), |row| Some(f64::from(row.resumed))),
         StudyAim::over("error of the clock with 1 ms jitter, ms", CLOCK_MS, all(), clock),
-        StudyAim::over("until a step of 50 ms of the clock is named, ms", NAMED_MS, all(), named),
+        StudyAim::over("until a clock step of 50 ms is reported, ms", NAMED_MS, all(), named),
     ]
     .into_iter()
     .flatten()

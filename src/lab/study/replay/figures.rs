@@ -80,10 +80,14 @@ pub struct ReplayFigures {
     pub condition: FigureSpread,
     /// Compared samples for which the mode had no valid force and rendered zero.
     pub rejected: u64,
-    /// Number of gaps in the recording; after each, window and delay start again.
+    /// Number of gaps in the recording. They are bridged; after a gap of more than 10 s, the identification starts again.
     pub holes: u64,
     /// The longest gap, s.
     pub longest_hole_s: f64,
+    /// Number of new force values per second, if the sensor renews the force much more slowly than the recording's rate.
+    pub force_renewal_hz: Option<f64>,
+    /// Factor by which the positions were multiplied, 1 if they could be metres or radians.
+    pub position_scale: f64,
     /// Computing time of one tick of identification.
     pub tick_us: IdentificationTime,
 }

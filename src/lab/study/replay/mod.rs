@@ -9,22 +9,26 @@
 
 mod figures;
 mod leader;
+mod renewal;
 mod summary;
 mod tally;
+mod unit;
 
 use std::time::Instant;
 
 use nalgebra::Vector3;
 use nima_core::{
     impedance::{Identifier, ImpedanceSettings, LinkPacket, Mode, ModeSet, OwnMotion, Recipe, Sample, SettingsError},
+    limits::WINDOW_SAMPLES,
     safety::{ChainSettings, ForceRequest, SafetyChain},
+    signal::DelayLine,
 };
 use nima_recording::csv::CsvRecording;
 
 pub use figures::{ErrorFigures, FigureSpread, IdentificationTime, Reconstruction, Reconstructions, ReplayFigures};
 pub use summary::{RatioFigures, ReplaySummary};
 
-use self::{leader::ReplayLeader, tally::ReplayTally};
+use self::{leader::ReplayLeader, tally::ReplayTally, unit::PositionUnit};
 
 /// Why a recording could not be replayed.
 #[derive(Debug, thiserror::Error)]
@@ -42,9 +46,14 @@ pub enum RecordingReplayError {
     ShortDelay { path: String, delay_ms: f64, rate_hz: f64, min_ms: f64 },
 }
 
-/// A time step longer than this (s) and this many periods is a gap: nothing is learned or rendered across it.
+/// A time step longer than this (s) and this many periods is a gap.
 const HOLE_S: f64 = 0.05;
 const HOLE_PERIODS: f64 = 10.0;
+/// A gap up to this long (s) is bridged like lost samples; after a longer one, window and delay start again.
+const BRIDGED_S: f64 = 10.0;
+
+/// A sample that was not recorded.
+const UNKNOWN: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
 /// One row of the trace.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +62,7 @@ pub struct ReplayRow {
     pub measured: Vector3<f64>,
     /// Rendered force, before the gates. `None` before the first packet, and while the mode has no valid force.
     pub rendered: Option<Vector3<f64>>,
-    /// `None` before the first packet.
+    /// `None` before the first packet, and one delay after a gap.
     pub held: Option<Vector3<f64>>,
     /// Degree used, 0 for none.
     pub degree: usize,
@@ -154,30 +163,36 @@ pub fn replay_motion(
     let mut tally = ReplayTally::default();
     let mut gates = SafetyChain::new(ChainSettings::default(), 1.0 / rate_hz);
     let hole_s = HOLE_S.max(HOLE_PERIODS / rate_hz);
-    let mut begin = 0;
+    let unit = PositionUnit::of(motion);
+    let mut held = DelayLine::new(delay, None);
     let mut last: Option<Sample> = None;
     for i in 0..samples {
-        let now = sample(i);
+        let read = sample(i);
+        let now = Sample { position_m: unit.metres(&read.position_m), ..read };
         let step_s = last.map_or(0.0, |last| now.t_s - last.t_s);
         if step_s > hole_s {
-            begin = i;
-            last = None;
             tally.hole(step_s);
-            identifier.reset();
             gates.reset();
-            if let Some((leader, _)) = &mut leader {
-                leader.reset();
+            let mut follower = ReplayFollower { identifier: &mut identifier, held: &mut held };
+            let renderer = leader.as_mut().map(|(leader, _)| leader);
+            match last {
+                Some(last) if step_s <= BRIDGED_S => follower.bridge(&last, step_s, rate_hz, renderer),
+                _ => follower.restart(renderer),
             }
+            last = None;
         }
         let start = Instant::now();
         identifier.step(&now);
         tally.tick.record(start.elapsed().as_secs_f64());
+        held.push(Some(now.force_n));
         let report = identifier.report();
         let rendered = match &mut leader {
-            Some((leader, position_m)) => leader.step(&position_m(i), identifier.parcel()).force(options.mode),
+            Some((leader, position_m)) => {
+                leader.step(&unit.metres(&position_m(i)), identifier.parcel()).force(options.mode)
+            }
             None => report.prediction(options.mode),
         };
-        let held = i.checked_sub(delay).filter(|then| *then >= begin).map(|then| sample(then).force_n);
+        let held = held.get(delay).copied().flatten();
         let speed_m_s = (now.position_m - last.unwrap_or(now).position_m).norm() * rate_hz;
         let (_, gate) = gates.step(&ForceRequest {
             t_s: now.t_s,
@@ -200,7 +215,37 @@ pub fn replay_motion(
         each(&row, identifier.parcel());
         last = Some(now);
     }
-    Ok(tally.figures(motion, options.mode, &settings))
+    Ok(tally.figures(motion, options.mode, &settings, &unit))
+}
+
+/// The follower's end of a replay at a gap.
+struct ReplayFollower<'a> {
+    identifier: &'a mut Identifier,
+    held: &'a mut DelayLine<Option<Vector3<f64>>>,
+}
+
+impl ReplayFollower<'_> {
+    /// Runs the ticks of a gap after the sample `last`, as if every sample had been lost.
+    fn bridge(&mut self, last: &Sample, step_s: f64, rate_hz: f64, mut leader: Option<&mut ReplayLeader>) {
+        let missing = ((step_s * rate_hz).round() as usize).saturating_sub(1);
+        for k in 1..=missing {
+            let t_s = last.t_s + k as f64 / rate_hz;
+            self.identifier.step(&Sample { t_s, position_m: UNKNOWN, force_n: UNKNOWN });
+            // One delay after the gap, there is again a measured force to compare with.
+            self.held.push(None);
+            if let Some(leader) = &mut leader {
+                leader.step(&UNKNOWN, self.identifier.parcel());
+            }
+        }
+    }
+
+    fn restart(&mut self, leader: Option<&mut ReplayLeader>) {
+        self.identifier.reset();
+        self.held.clear();
+        if let Some(leader) = leader {
+            leader.reset();
+        }
+    }
 }
 
 /// Returns the settings of the identification, and the delay in samples.
@@ -221,6 +266,10 @@ fn settings(
         modes: ModeSet::default().with(options.mode),
         ..ImpedanceSettings::default()
     };
+    if options.window_s * rate_hz < WINDOW_SAMPLES.min && !options.mode.has_window() {
+        // At a low rate, the paper's windows are left out, and a mode without a window works all the same.
+        settings.modes = ModeSet::only(options.mode);
+    }
     settings.validate()?;
     let delay = (options.delay_s * rate_hz).round() as usize;
     settings.delay_s = delay as f64 / rate_hz;
@@ -232,7 +281,7 @@ fn settings(
             min_ms: 0.5e3 / rate_hz,
         });
     }
-    let window = (options.window_s * rate_hz).round() as usize;
+    let window = if settings.modes.contains(Mode::Literal) { (options.window_s * rate_hz).round() as usize } else { 0 };
     let needed = window + delay + 1;
     if motion.samples < needed {
         return Err(RecordingReplayError::TooShort {

@@ -9,6 +9,8 @@ use nima_core::{
 use super::{
     ReplayMotion, ReplayRow,
     figures::{ErrorFigures, FigureSpread, IdentificationTime, Reconstruction, Reconstructions, ReplayFigures},
+    renewal::ForceRenewals,
+    unit::PositionUnit,
 };
 
 #[derive(Default)]
@@ -22,6 +24,7 @@ pub(super) struct ReplayTally {
     rejected: u64,
     holes: u64,
     longest_hole_s: f64,
+    renewals: ForceRenewals,
     pub(super) tick: Percentiles,
 }
 
@@ -32,7 +35,8 @@ impl ReplayTally {
     }
 
     pub(super) fn add(&mut self, row: &ReplayRow, report: &IdentificationReport) {
-        if let Some(chosen) = usize::from(report.paper_degree).checked_sub(1) {
+        self.renewals.add(&row.measured);
+        if let Some(chosen) = usize::from(report.degrees.paper).checked_sub(1) {
             for (errors, residual) in self.reconstruction.iter_mut().zip(&report.reconstruction_n) {
                 errors.add(residual);
             }
@@ -54,6 +58,7 @@ impl ReplayTally {
         motion: &ReplayMotion<'_>,
         mode: Mode,
         settings: &ImpedanceSettings,
+        unit: &PositionUnit,
     ) -> ReplayFigures {
         let compared = self.error.norms.len();
         let fraction = |count: u64| count as f64 / compared.max(1) as f64;
@@ -90,6 +95,8 @@ impl ReplayTally {
             rejected: self.rejected,
             holes: self.holes,
             longest_hole_s: tidy_ms(self.longest_hole_s) * 1e-3,
+            force_renewal_hz: self.renewals.slow_hz(motion.rate_hz),
+            position_scale: unit.scale,
             tick_us: IdentificationTime { p50: tick.p50, p99: tick.p99, max: tick.max },
         }
     }

@@ -85,3 +85,61 @@ fn several_recordings_are_one_in_proportion_to_their_samples() {
     assert!((ratios.greatest - 1.0).abs() < 1e-12 && ratios.min < 0.7 && ratios.median <= ratios.greatest);
     assert_eq!(both.worst.as_deref(), Some("b.csv"));
 }
+
+/// Returns the figures of samples at a rate.
+fn figures(rate_hz: f64, samples: &[Sample], mode: Mode) -> Result<ReplayFigures, RecordingReplayError> {
+    let motion = ReplayMotion {
+        name: "test".into(),
+        axes: &[0, 1, 2],
+        rate_hz,
+        samples: samples.len(),
+        sample: &|i: usize| samples[i],
+        leader_m: None,
+    };
+    let delay_s = OPTIONS.delay_s.max(1.0 / rate_hz);
+    replay_motion(&motion, &ReplayOptions { mode, delay_s, ..OPTIONS }, |_, _| ())
+}
+
+#[test]
+fn a_gap_is_bridged() {
+    let without = |gap: std::ops::Range<usize>| -> Vec<Sample> {
+        (0..4000).filter(|i| !gap.contains(i)).map(|i| sample(i, None)).collect()
+    };
+    let mae = |samples: &[Sample]| figures(1000.0, samples, Mode::Best).unwrap().error.mae;
+    let [whole, gap] = [without(0..0), without(2000..2500)].map(|samples| mae(&samples));
+    assert!(gap < 1.3 * whole, "{gap} N with a gap, {whole} N without");
+}
+
+#[test]
+fn positions_of_any_unit_and_origin_give_the_same_force() {
+    let samples: Vec<Sample> = (0..3000).map(|i| sample(i, None)).collect();
+    let expected = figures(1000.0, &samples, Mode::Best).unwrap().error.mae;
+    for (scale, origin) in [(1e6, 0.0), (1e3, 5e4), (1.0, 1000.0), (1e-6, 0.0)] {
+        let other = |s: &Sample| Sample { position_m: s.position_m * scale + Vector3::repeat(origin), ..*s };
+        let moved: Vec<Sample> = samples.iter().map(other).collect();
+        let found = figures(1000.0, &moved, Mode::Best).unwrap().error.mae;
+        assert!(
+            (found / expected - 1.0).abs() < 0.02,
+            "times {scale} plus {origin}: {found} N, {expected} N in metres"
+        );
+    }
+}
+
+#[test]
+fn a_slow_recording_is_identified_by_the_modes_without_a_window() {
+    let samples: Vec<Sample> = (0..200).map(|i| sample(200 * i, None)).collect();
+    let best = figures(5.0, &samples, Mode::Best).unwrap();
+    assert!(best.error.mae.is_finite() && best.compared > 100, "{best:?}");
+    let literal = figures(5.0, &samples, Mode::Literal).unwrap_err().to_string();
+    assert!(literal.contains("window"), "{literal}");
+}
+
+#[test]
+fn a_force_that_is_renewed_more_slowly_than_it_is_recorded_is_named() {
+    let fresh: Vec<Sample> = (0..3000).map(|i| sample(i, None)).collect();
+    let stale: Vec<Sample> =
+        (0..3000).map(|i| Sample { force_n: sample(i - i % 250, None).force_n, ..sample(i, None) }).collect();
+    assert_eq!(figures(1000.0, &fresh, Mode::Best).unwrap().force_renewal_hz, None);
+    let hz = figures(1000.0, &stale, Mode::Best).unwrap().force_renewal_hz.unwrap();
+    assert!((hz - 4.0).abs() < 0.5, "{hz} Hz");
+}

@@ -84,7 +84,7 @@ pub fn study(clock: VirtualClock, seed: u64, delay_s: f64) -> Result<ValidationR
             return None;
         }
         let report = &tick.identification;
-        if let degree @ 1.. = usize::from(report.paper_degree) {
+        if let degree @ 1.. = usize::from(report.degrees.paper) {
             windows += 1;
             above_one += u32::from(degree > 1);
             nonlinear.add(&report.reconstruction_n[degree - 1]);

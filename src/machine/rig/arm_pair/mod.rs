@@ -121,7 +121,7 @@ impl ArmPair {
             self.measured.take_handle(reading);
         }
         if let Some(reading) = self.follower.as_mut().and_then(|slots| slots.arm.poll(now_s)) {
-            of_arm.arm(&reading.value);
+            of_arm.arm(&reading.value, self.measured.mount.model().joints());
             self.measured.take_arm(reading);
         }
         if let Some(reading) = self.follower.as_mut().and_then(|slots| slots.sensor.poll(now_s)) {

@@ -105,9 +105,8 @@ impl FollowerSettings {
     /// belong, and a simulated arm has no such world.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), DeviceError> {
         match self {
-            Self::Kinova(_) => Ok(()),
+            Self::Kinova(_) | Self::External(_) => Ok(()),
             Self::Simulated(_) => super::not_emulated("simulated", rig_is_emulated),
-            Self::External(_) => super::not_emulated("external", rig_is_emulated),
         }
     }
 

@@ -23,7 +23,9 @@ use nima_session::{
 };
 use nima_simulation::{SimulationPlan, scene::Scene};
 
+mod damage;
 mod images;
+mod signals;
 mod training;
 
 use super::Playback;
@@ -240,40 +242,6 @@ fn a_stretch_is_saved_beside_its_session_and_kept() {
     let outcome = replay(RecordedFile::open(&saved).unwrap().journal().unwrap(), |_| ()).unwrap();
     assert!(outcome.ticks >= 2200 && outcome.differs.is_none(), "{outcome:?}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "no half a file is left");
-}
-
-#[test]
-fn damage_costs_what_is_damaged_and_is_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("session.mcap");
-    record(&path, "peg_transfer", 10.0, |_| None);
-    let ticks = replayed(&path);
-    let mut bytes = std::fs::read(&path).unwrap();
-    let middle = bytes.len() * 6 / 10;
-    bytes[middle..middle + 64].fill(0xa5);
-    std::fs::write(&path, bytes).unwrap();
-    let mut past = open(&path);
-    until(&mut past, "read", |past| past.read_share() > 0.999);
-    assert!(past.report.limited.is_some() && past.refused().is_none(), "{:?}", past.report);
-    settled(&mut past, 2.0);
-    assert!(same(&past.live.as_ref().unwrap().ticks, &ticks[2000]));
-    past.show(9.0);
-    past.live = None;
-    until(&mut past, "shown behind the damage", |past| past.live.is_some());
-    let shown = past.live.as_ref().unwrap().ticks[0].unwrap();
-    assert_eq!((shown.t_s, shown.measured_n), (9.0, ticks[9000][0].unwrap().measured_n));
-}
-
-#[test]
-fn what_is_no_session_is_refused_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("session.mcap");
-    for content in ["", "not a session at all"] {
-        std::fs::write(&path, content).unwrap();
-        let mut past = open(&path);
-        until(&mut past, "refused", |past| past.refused().is_some());
-        assert!(!past.refused().unwrap().contains('\n') && past.live.is_none());
-    }
 }
 
 #[test]

@@ -1,10 +1,7 @@
 //! Facts about each arm.
 
 use nalgebra::Vector3;
-use nima_core::{
-    kinematics::{JOINTS, Joints},
-    safety::Gate,
-};
+use nima_core::{kinematics::Joints, safety::Gate};
 use nima_machine::{
     messages::LoopState,
     rig::{RigPart, Side},
@@ -51,12 +48,13 @@ impl LiveState {
     fn measured_links_m(&self, side: Side) -> Option<Vec<Vector3<f32>>> {
         let arm = self.rig.devices.as_ref()?.arm(side)?.kinematics().ok()?;
         let place = self.roster.iter().position(|entry| entry.part == Some(RigPart::Arm(side)))?;
-        let angles = &self.blocks.back()?.devices.get(place)?.channels[..JOINTS];
+        let joints = arm.model().joints();
+        let angles = &self.blocks.back()?.devices.get(place)?.channels[..joints];
         if angles.iter().any(|angle| angle.count == 0) {
             return None;
         }
-        let pose = arm.pose(&Joints::from_fn(|joint, _| angles[joint].mean));
-        let joints_m = &pose.chain.origin_m[..arm.model().joints()];
+        let pose = arm.pose(&Joints::from_fn(|joint, _| angles.get(joint).map_or(0.0, |angle| angle.mean)));
+        let joints_m = &pose.chain.origin_m[..joints];
         let ends = [pose.chain.world_from_flange, pose.world_from_s1].map(|end| end.translation.vector);
         let base_m = arm.world_from_base().translation.vector;
         Some(std::iter::once(&base_m).chain(joints_m).chain(&ends).map(|at_m| at_m.cast()).collect())

@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &CorrespondenceArguments) -> anyhow::Result<()> {
         bail!("--override requires the name of the person who decides");
     }
     if let Some(out) = &arguments.out {
-        super::check(out, &arguments.pairs)?;
+        super::check::<CorrespondenceRecord>(out, &arguments.pairs)?;
     }
     let mapping = ColumnMapping::parse_for(&PAIRS, &arguments.map)?;
     let pairs = read_mapped_pairs(&arguments.pairs, &mapping)?;

@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use nima_core::calibration::{
     Residuals, Verdict,
-    gravity::{GravityReport, GravitySettings, ModelKind, fit},
+    gravity::{GravityRecord, GravityReport, GravitySettings, ModelKind, fit},
 };
 use nima_recording::{
     csv::{ColumnMapping, POSES, read_mapped_poses},
@@ -62,7 +62,7 @@ pub(in crate::command) struct GravityArguments {
 
 pub(in crate::command) fn run(arguments: &GravityArguments) -> anyhow::Result<()> {
     if let Some(out) = &arguments.out {
-        super::check(out, &arguments.poses)?;
+        super::check::<GravityRecord>(out, &arguments.poses)?;
     }
     let mapping = ColumnMapping::parse_for(&POSES, &arguments.map)?;
     let poses = read_mapped_poses(&arguments.poses, &mapping)?;

@@ -8,6 +8,7 @@ mod rig;
 use std::path::Path;
 
 use clap::Subcommand;
+use nima_core::calibration::CalibrationRecord;
 use nima_recording::store;
 use nima_report::output;
 
@@ -32,8 +33,10 @@ pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {
     }
 }
 
-/// Checks, before the work starts, that a calibration can be written to `out`, and the previous one next to it.
-fn check(out: &Path, input: &Path) -> anyhow::Result<()> {
+/// Checks, before the work starts, that a calibration of kind `R` can be written to `out`, and the previous one next to
+/// it.
+fn check<R: CalibrationRecord>(out: &Path, input: &Path) -> anyhow::Result<()> {
     output::check(out, &[input])?;
+    store::check_kind::<R>(out)?;
     if out.exists() { output::check(&store::previous(out), &[input]) } else { Ok(()) }
 }

@@ -64,7 +64,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
-    /// kalman, autoregressive (default: the rig's)
+    /// kalman, autoregressive, increments (default: the rig's)
     #[arg(long)]
     pub(crate) mode: Option<Mode>,
     /// One-way delay of the link in ms (default: the rig's)
@@ -237,7 +237,8 @@ pub(crate) fn run_with(
             wrist.tool
         );
     }
-    start.reasons.of(&summary, by_itself).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
+    let link = start.line.as_ref().and_then(|line| line.trouble());
+    start.reasons.of(&summary, by_itself, link.as_ref()).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
 
 /// Results of a run; ground truth only from emulated rigs.
@@ -316,7 +317,7 @@ impl RunStart {
         };
         let report = format!("not calibrated ({effect}): {words}; calibrate with `nima calibrate rig --rig {rig}`");
         let report = Some(report).filter(|_| !words.is_empty());
-        // Also report a file that cannot be used, and a sensor or tool that is in another sensor's place.
+        // Also report unusable files, and sensors or tools at the wrong place.
         let report = report.into_iter().chain(self.active.report()).collect::<Vec<_>>().join(". ");
         let is_new = !report.is_empty() && self.lacking.as_ref() != Some(&report);
         is_new.then(|| self.lacking.insert(report).clone())

@@ -80,7 +80,7 @@ impl StatusLine {
             tick.mode,
             newtons(tick.known_n().map(|force_n| force_n.norm()), 2),
             tick.rendering.rendered_n.norm(),
-            tick.identification.degree,
+            tick.identification.degrees.anchored,
             tick.timing.missed,
         );
         self.write(&text);

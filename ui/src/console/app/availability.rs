@@ -185,7 +185,9 @@ impl ConsoleApp {
     /// Returns the panels of the views on the screen: of the machine, or of the recorded session.
     fn panels_in_view(&self) -> Option<&Panels> {
         match &self.shown {
-            ShownPage::Past(past) if past.beside.is_none() && !past.is_choosing => Some(&past.panels),
+            ShownPage::Past(past) if past.beside.is_none() && !past.is_choosing && !past.is_foreign() => {
+                Some(&past.panels)
+            }
             ShownPage::Monitor => Some(&self.panels),
             _ => None,
         }

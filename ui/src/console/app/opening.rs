@@ -33,8 +33,10 @@ impl ConsoleApp {
         if let Some(which) = self.options.wizard {
             self.open_wizard(which);
         }
-        if let Some(session) = self.options.session.clone() {
-            self.open_past(&session);
+        match (self.options.session.clone(), self.options.signals.take()) {
+            (Some(recording), Some(signals)) => self.open_signals(&recording, &signals),
+            (Some(session), None) => self.open_past(&session),
+            (None, _) => {}
         }
         self.leave_when_asked();
         self

@@ -2,11 +2,12 @@
 //!
 //! The machine keeps running, its alarms are shown and its stop works; no other control reaches it.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use egui::{CentralPanel, Stroke, StrokeKind, Ui};
 use nima_panels::roles::role_ui;
-use nima_playback::{FRAME, Playback, bar_ui, both_ui, head_ui, list::SessionListChoice};
+use nima_playback::{FRAME, Playback, bar_ui, both_ui, head_ui, list::SessionListChoice, signals_ui};
+use nima_recording::csv::Signals;
 use nima_screen::{loop_connection::LoopConnection, theme, widgets::weak};
 use nima_words::text;
 
@@ -17,6 +18,13 @@ impl ConsoleApp {
     #[must_use]
     pub fn with_session(mut self, session: &Path) -> Self {
         self.open_past(session);
+        self
+    }
+
+    /// Shows the signals of another program's recording; the machine keeps running.
+    #[must_use]
+    pub fn with_signals(mut self, recording: &Path, signals: &Arc<Signals>) -> Self {
+        self.open_signals(recording, signals);
         self
     }
 
@@ -48,14 +56,22 @@ impl ConsoleApp {
         }
     }
 
-    /// Opens a session. First ends everything that the screen does to the machine automatically: a demonstration, or mouse
-    /// control.
     pub(super) fn open_past(&mut self, session: &Path) {
+        self.leave_machine();
+        let past = Playback::open(session, &self.ctx, self.panels.scene.twin());
+        self.shown = ShownPage::Past(Box::new(past));
+    }
+
+    pub(super) fn open_signals(&mut self, recording: &Path, signals: &Arc<Signals>) {
+        self.leave_machine();
+        self.shown = ShownPage::Past(Box::new(Playback::open_signals(recording, signals, &self.ctx)));
+    }
+
+    /// Ends everything that the screen does to the machine automatically: a demonstration, or mouse control.
+    fn leave_machine(&mut self) {
         self.panels.demo.leave(&mut self.outbox);
         self.panels.scene.let_go(&mut self.outbox);
         self.outbox.flush(self.door.as_ref().map(LoopConnection::handle));
-        let past = Playback::open(session, &self.ctx, self.panels.scene.twin());
-        self.shown = ShownPage::Past(Box::new(past));
     }
 
     /// Advances playback by this time.
@@ -103,6 +119,9 @@ impl ConsoleApp {
             }
             if past.beside.is_some() {
                 return both_ui(ui, past, smooth);
+            }
+            if past.is_foreign() && past.live.is_some() {
+                return signals_ui(ui, past);
             }
             let Some(live) = &mut past.live else {
                 let words = past.refused().unwrap_or(text::playback::OPENING.get());

@@ -59,6 +59,10 @@ impl ConsoleApp {
             return;
         }
         let (live, panels, active, outbox) = match self.shown.past_mut() {
+            Some(past) if past.is_foreign() => {
+                ui.label(weak(text::playback::ONLY_SESSIONS));
+                return;
+            }
             None => (&mut self.live, &mut self.panels, &self.active, &mut self.outbox),
             Some(past) => {
                 let Some(live) = &mut past.live else { return };

@@ -37,7 +37,7 @@ pub(super) struct IdentifyArguments {
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
-    /// kalman, autoregressive
+    /// kalman, autoregressive, increments
     #[arg(long, default_value = "best")]
     mode: Mode,
     /// Length of the identification window, ms
@@ -177,6 +177,19 @@ fn ratio_of(figures: &ReplayFigures) -> Option<f64> {
     (figures.hold.mae > 0.0).then(|| figures.error.mae / figures.hold.mae)
 }
 
+/// Returns the lines on a slow force and on positions in another unit; empty for an ordinary recording.
+fn input_text(figures: &ReplayFigures) -> String {
+    let mut text = String::new();
+    if let Some(hz) = figures.force_renewal_hz {
+        write!(text, "\nSLOW FORCE             the force renews {hz:.0} times a second").ok();
+    }
+    let scale = figures.position_scale;
+    if (scale - 1.0).abs() > 0.0 {
+        write!(text, "\nPOSITIONS              multiplied by {scale:e}: too large or too small for metres").ok();
+    }
+    text
+}
+
 /// Returns one line per recording, and one line for all.
 fn many_as_text(all: &[(String, ReplayFigures)], summary: &ReplaySummary) -> String {
     let row = |name: &str, compared: usize, error: f64, hold: f64, ratio: Option<f64>| {
@@ -207,14 +220,15 @@ fn as_text(figures: &ReplayFigures) -> String {
     let holes = match figures.holes {
         0 => String::new(),
         count => format!(
-            "\nGAPS                   {count}, the longest {:.3} s: window and delay restarted after each",
+            "\nGAPS                   {count}, the longest {:.3} s: bridged; after more than 10 s, the identification restarts",
             figures.longest_hole_s
         ),
     };
+    let input = input_text(figures);
     let reconstruction = &figures.reconstruction;
     let [d1, d2, d3, d4, d5] = figures.degree_fraction.map(|fraction| fraction * 100.0);
     format!(
-        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms{motion}{holes}\n\
+        "{samples} samples at {rate:.1} Hz, axes {axes}; mode {mode}, window {window:.1} ms, delay {delay:.1} ms{motion}{holes}{input}\n\
          error at the horizon   mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
          held force (DFR)       mean {:.5}   sd {:.5}   p95 {:.5}   max {:.5}\n\
          rendered / held        {ratio}\n\

@@ -83,6 +83,16 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
             ),
             word("pair the two machines with `nima pair`", "beide Rechner mit `nima pair` paaren"),
         ],
+        LinkCause::Flooded => [
+            word(
+                "other computers send so much to this port that data of the other machine are lost",
+                "andere Rechner senden so viel an diesen Port, dass Daten der Gegenstelle verloren gehen",
+            ),
+            word(
+                "restrict the firewall to the address of the other machine",
+                "die Firewall auf die Adresse der Gegenstelle beschränken",
+            ),
+        ],
         LinkCause::Silent { .. } | LinkCause::ClockJumped { .. } => [
             word("no response from the other machine", "keine Antwort von der Gegenstelle"),
             word(

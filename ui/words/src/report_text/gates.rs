@@ -115,9 +115,10 @@ impl ShortText for Reason {
              unbekannt",
             ),
             Self::GainZero => word("the gain is zero", "die Verstärkung ist null"),
-            Self::GainRamping => {
-                word("the gain is still changing to the chosen value", "die Verstärkung läuft noch zum gewählten Wert")
-            }
+            Self::GainRamping => word(
+                "the gain is still changing to the chosen value",
+                "die Verstärkung nähert sich noch dem gewählten Wert",
+            ),
             Self::ChangeTooFast => word("the force would change too fast", "die Kraft würde sich zu schnell ändern"),
             Self::EnergySpent => word(
                 "the hand would get back more energy than it put in",

@@ -147,5 +147,14 @@ fn of_baseline(baseline: Baseline) -> [&'static str; 2] {
                  vorhergesagt",
             ),
         ],
+        Baseline::Increments => [
+            word("Increments", "Inkremente"),
+            word(
+                "For comparison: the delayed force plus its change, from the change of motion and the trend of the \
+                 force by recursive least squares",
+                "Zum Vergleich: die verzögerte Kraft und ihre Änderung, aus der Änderung der Bewegung und dem Trend der \
+                 Kraft mit rekursiven kleinsten Quadraten",
+            ),
+        ],
     }
 }

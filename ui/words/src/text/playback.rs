@@ -97,6 +97,9 @@ pub const PLOTTED: Text = Text::of(
     "Kräfte, Positionen und Zustände; der Rest wird geladen",
 );
 pub const PLOTTED_ONLY: Text = Text::of("Only forces, positions and states", "Nur Kräfte, Positionen und Zustände");
+pub const OF_ANOTHER_PROGRAM: Text =
+    Text::of("recorded by another program", "von einem anderen Programm aufgezeichnet");
+pub const ONLY_SESSIONS: Text = Text::of("Only for sessions of this program", "Nur für Sitzungen dieses Programms");
 pub const SIMULATED: Text = Text::of(
     "This rig has no devices: everything was simulated",
     "Dieser Aufbau hat keine Geräte: alles war simuliert",
@@ -211,17 +214,38 @@ pub fn half(name: &str, position: &str) -> String {
     format!("{name}  \u{b7}  {position}")
 }
 
-/// `measured` has its unit, or is the sign for an unknown force; rendered force in N.
-pub fn largest(t_s: f64, measured: &str, rendered_n: f32) -> String {
+/// Both forces have their unit, or are the sign for an unknown force.
+pub fn largest(t_s: f64, measured: &str, rendered: &str) -> String {
     text_format!(
-        "{}\nLargest forces: measured {measured}, rendered {rendered_n:.2} N",
-        "{}\nGrößte Kräfte: gemessen {measured}, dargestellt {rendered_n:.2} N",
+        "{}\nLargest forces: measured {measured}, rendered {rendered}",
+        "{}\nGrößte Kräfte: gemessen {measured}, dargestellt {rendered}",
         short_clock(t_s)
     )
 }
 
+/// The axes of another program's recording on which force and position are known, such as "x, z".
+pub fn known_signals(force: &str, position: &str) -> String {
+    let axes = |axes: &str| if axes.is_empty() { word("unknown", "unbekannt").to_owned() } else { axes.to_owned() };
+    text_format!(
+        "Recorded by another program. Force: {}. Position: {}. Everything else is unknown.",
+        "Von einem anderen Programm aufgezeichnet. Kraft: {}. Position: {}. Alles andere ist unbekannt.",
+        axes(force),
+        axes(position)
+    )
+}
+
+/// Forces and positions at a moment, with their units.
+pub fn values_now(force: &str, position: &str) -> String {
+    text_format!("Force  {force}     Position  {position}", "Kraft  {force}     Position  {position}")
+}
+
 pub fn limited(why: &str) -> String {
     text_format!("Cannot be replayed in full: {why}", "Nicht vollständig wiederzugeben: {why}")
+}
+
+/// `line`: data that the session lacks.
+pub fn lacks(line: &str) -> String {
+    text_format!("Not complete: {line}", "Nicht vollständig: „{line}“")
 }
 
 pub fn refused(why: &str) -> String {

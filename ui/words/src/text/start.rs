@@ -89,8 +89,10 @@ pub const STARTING: Text = Text::of("Starting", "Startet");
 pub const ENGAGED: Text =
     Text::of("Press Stop first: this rig is engaged", "Erst Halt drücken: dieser Aufbau ist gekoppelt");
 pub const ALL_THERE: Text = Text::of("All devices respond", "Alle Geräte antworten");
-pub const NO_THREAD: Text =
-    Text::of("the system cannot start a thread for the emulators", "das System gibt keinen Thread für die Emulatoren");
+pub const NO_THREAD: Text = Text::of(
+    "the system cannot start a thread for the emulators",
+    "das System kann keinen Thread für die Emulatoren starten",
+);
 pub const NO_FOLDER: Text =
     Text::of("No data folder was found: set NIMA_DATA_DIR", "Kein Datenordner gefunden: NIMA_DATA_DIR setzen");
 pub const NAME_FIRST: Text = Text::of(

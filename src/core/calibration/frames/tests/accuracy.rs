@@ -174,7 +174,7 @@ fn right_on_the_handle_is_right_in_the_picture() {
     let right_m = leader_from_view * Vector3::x() * 0.01;
     let seen = base_from_view().inverse() * mapping.to_tip(&right_m);
     assert!(seen.angle(&Vector3::x()).to_degrees() < 3.0, "{seen}");
-    // A marker on the endoscope, which was turned in the meantime.
+    // The endoscope has a marker, and was turned in the meantime.
     let c_from_n = any_turn(&mut rig);
     let turn = any_turn(&mut rig);
     let base_from_c = base_from_c().rotation;

@@ -129,18 +129,18 @@ pub(super) fn in_window(recording: &CsvRecording) -> Result<InWindow, Validation
     let mut next = NonlinearFraction::default();
     identify(recording, PRINTED, 0.0, |_, identifier| {
         let report = identifier.report();
-        if let degree @ 1.. = usize::from(report.paper_degree) {
+        if let degree @ 1.. = usize::from(report.degrees.paper) {
             window.add(degree);
             nonlinear.add(&report.reconstruction_n[degree - 1]);
             linear.add(&report.reconstruction_n[0]);
         }
     })?;
     identify(recording, Recipe { choice: DegreeChoice::Next, ..PRINTED }, 0.0, |_, identifier| {
-        next.add(usize::from(identifier.report().paper_degree));
+        next.add(usize::from(identifier.report().degrees.paper));
     })?;
     identify(recording, Recipe { reading: IncrementReading::Displacement, ..PRINTED }, 0.0, |_, identifier| {
         let report = identifier.report();
-        if let degree @ 1.. = usize::from(report.paper_degree) {
+        if let degree @ 1.. = usize::from(report.degrees.paper) {
             displacement.add(&report.reconstruction_n[degree - 1]);
         }
     })?;

@@ -81,7 +81,8 @@ fn figures_ui(ui: &mut Ui, live: &LiveState) {
     let of_degrees = live.degrees.fractions(DegreeRule::Console, false);
     let fractions = of_degrees.map(DegreeFractions::fractions).unwrap_or_default();
     let is_known = of_degrees.is_some();
-    let identified = live.first_tick().filter(|_| is_known).map(|tick| tick.identification.degree.to_string());
+    let identified =
+        live.first_tick().filter(|_| is_known).map(|tick| tick.identification.degrees.anchored.to_string());
     let degree = identified.unwrap_or_else(|| "–".to_owned());
     let name = text::roles::gain_and_degree(live.gain());
     figure(ui, &name, degree, text::roles::FIGURES_HOVER);

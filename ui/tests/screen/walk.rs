@@ -269,7 +269,10 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
         bench::press(&mut harness, button);
         harness.run_steps(4);
         let now = back(&harness);
-        assert!((now.center() - place.center()).length() < 1.5, "the buttons stay under the pointer: {place:?} {now:?}");
+        assert!(
+            (now.center() - place.center()).length() < 1.5,
+            "the buttons stay under the pointer: {place:?} {now:?}"
+        );
     }
     bench::press(&mut harness, "Stop");
     until(&mut harness, "stopped during the tour", |tick| tick.state == LoopState::Stopped);

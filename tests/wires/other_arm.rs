@@ -38,7 +38,7 @@ fn worst_miss_m(set: &ArmSet, ticks: &[Tick]) -> f64 {
 fn emulated_ur5e(folder: &std::path::Path) -> String {
     let text = std::fs::read_to_string(here("assets/arms/emulated-ur5e.toml")).unwrap();
     let [handle, arm, _] = free_ports();
-    let sensor = folder.join("sensor").display().to_string();
+    let sensor = folder.join("ttyACM-sensor").display().to_string();
     [
         ("47210", handle.to_string().as_str()),
         ("47211", arm.to_string().as_str()),

@@ -38,7 +38,7 @@ fn worst_miss_m(set: &ArmSet, ticks: &[Tick]) -> f64 {
 fn emulated_ur5e(folder: &std::path::Path) -> String {
     let text = std::fs::read_to_string(here("assets/arms/emulated-ur5e.toml")).unwrap();
     let [handle, arm, _] = free_ports();
-    let sensor = folder.join("sensor").display().to_string();
+    let sensor = folder.join("ttyACM-sensor").display().to_string();
     [
         ("47210", handle.to_string().as_str()),
         ("47211", arm.to_string().as_str()),
@@ -84,18 +84,21 @@ fn lead_emulated(name: &str, text: &str) {
         travel_m.set(f64::max(travel_m.get(), (truth.tip_m - begin_m).norm()));
         bench.ticks.len() > TICKS || bench.state() != LoopState::Engaged
     });
-    if bench.state() != LoopState::Engaged {
-        too_busy();
-    }
     let worst_m = worst_miss_m(&set, &bench.ticks);
     println!(
-        "{name}: the tip moved {} m, the shaft missed the trocar by at most {worst_m} m, {} rad to a limit",
+        "{name}: {} ticks, {:?}: the tip moved {} m, the shaft missed the trocar by at most {worst_m} m, {} rad to a limit",
+        bench.ticks.len(),
+        bench.state(),
         travel_m.get(),
         margin_rad.get()
     );
     assert!(travel_m.get() > 5e-3, "{name}: it hardly moved: {} m", travel_m.get());
     assert!(worst_m > 0.0 && worst_m <= MISS_MAX_M, "{name}: {worst_m} m beside the trocar");
     assert!(margin_rad.get() > 0.0, "{name}: beyond a limit by {} rad", -margin_rad.get());
+    // On a busy machine a stall ends the engagement; trocar and limits were kept until then.
+    if bench.state() != LoopState::Engaged {
+        too_busy();
+    }
 }
 
 #[test]

@@ -42,6 +42,8 @@ impl Help {
         let window = Window::new(TOUR_WINDOW.get()).title_bar(false).resizable(false).movable(false).constrain_to(room);
         let window = window.anchor(Align2::CENTER_TOP, vec2(0.0, 12.0)).fixed_size(vec2(440.0, 0.0));
         window.show(ctx, |ui| {
+            // A window with shorter lines would be narrower, and its buttons elsewhere.
+            ui.set_min_width(ui.available_width());
             ui.label(RichText::new(heading.get()).font(theme::strong(18.0)));
             let font = theme::regular(15.0);
             // The room of the longest text, so that the buttons stay under the pointer.

@@ -7,6 +7,7 @@ use super::{
     holding::{HeldMixture, Holding},
     messages::{IdentificationReport, LinkPacket},
     method::{LeaderEnd, LeaderInput, RenderingMethod},
+    mixture::eighth_power,
     motion_clock::{fraction, newest_fraction},
     settings::{ImpedanceSettings, MAX_DELAY_S},
 };
@@ -105,7 +106,6 @@ struct Judge {
 /// Forces (N) that anchored, matched and their mixture rendered at one tick, and the pace of time then.
 #[derive(Clone, Copy, Debug)]
 struct Said {
-    anchored_n: Lanes,
     matched_n: Lanes,
     mixture: HeldMixture,
     pace: f64,
@@ -173,9 +173,9 @@ impl Judge {
     /// Returns the mixture of the forces (N). Matched rendering has the whole weight before the first evaluation.
     fn render(&mut self, anchored_n: Lanes, matched_n: Option<Lanes>, held_n: Lanes) -> Lanes {
         let without_n = matched_n.map_or(anchored_n, |matched_n| matched_n + (anchored_n - matched_n) * self.anchored);
-        let alone = HeldMixture { without: without_n, held: held_n, mixed: without_n };
-        let mixture = self.holding.as_ref().map_or(alone, |holding| holding.mix(without_n, held_n));
-        self.newest = matched_n.map(|matched_n| Said { anchored_n, matched_n, mixture, pace: 0.0 });
+        let alone = HeldMixture { anchored: anchored_n, without: without_n, held: held_n, mixed: without_n };
+        let mixture = self.holding.as_ref().map_or(alone, |holding| holding.mix(alone));
+        self.newest = matched_n.map(|matched_n| Said { matched_n, mixture, pace: 0.0 });
         mixture.mixed
     }
 
@@ -191,7 +191,7 @@ impl Judge {
             self.forget();
             return;
         }
-        let Some(&Some(Said { anchored_n, matched_n, mixture, pace })) = self.said.get(age) else { return };
+        let Some(&Some(Said { matched_n, mixture, pace })) = self.said.get(age) else { return };
         if !parcel.fresh || parcel.resting {
             return;
         }
@@ -199,7 +199,7 @@ impl Judge {
         self.judged += pace;
         let memory = MEMORY_S * self.rate_hz;
         let fraction = newest_fraction(pace, self.judged, memory);
-        let said_n = [anchored_n, matched_n, mixture.without];
+        let said_n = [mixture.anchored, matched_n, mixture.without];
         let [anchored_n, matched_n, mixed_n] = said_n.map(|said_n| (force_n - said_n).map(f64::abs));
         follow(&mut self.anchored_n, anchored_n, fraction);
         follow(&mut self.matched_n, matched_n, fraction);
@@ -244,13 +244,6 @@ fn follow(mean_n: &mut Lanes, error_n: Lanes, fraction: f64) {
 fn odds(error_n: Lanes, other_n: Lanes) -> Lanes {
     let floor_n = Lanes::splat(EQUAL_N);
     eighth_power((error_n + floor_n) / (other_n + floor_n))
-}
-
-/// Returns the eighth power, which the softmin uses.
-pub(super) fn eighth_power(value: Lanes) -> Lanes {
-    let square = value * value;
-    let fourth = square * square;
-    fourth * fourth
 }
 
 #[cfg(test)]

@@ -1,14 +1,20 @@
 //! The fraction of the held force in a rendered force: the judgement of holding.
 
-use super::motion_clock::newest_fraction;
+use super::{mixture::eighth_power, motion_clock::newest_fraction};
 use crate::signal::Lanes;
 
 /// Memory of the judgement (s); 2 to 5 s perform equally well.
 const MEMORY_S: f64 = 5.0;
-/// Holding is used in full only after this time (s), because the other rendering is still learning at first.
-const RAMP_S: f64 = 0.8;
+/// Time (s) of about equal differences between the two forces after which the judgement counts in full. A single touch of
+/// new tissue, where both forces are wrong for some 0.1 s, is no evidence. With 1.5 s, `best` is 0.2 % worse than anchored
+/// rendering over tissue that changes at each touch; with 0.3 s, it is up to 6 % worse.
+const EVIDENCE_S: f64 = 2.5;
 /// A smaller fraction of the held force is chance, and is not used.
 const CHANCE: f64 = 0.1;
+/// Holding is given up where its error exceeds this many times that of the better of rendering without it and anchored
+/// rendering: a regression over some seconds also finds a fraction of it in the errors right after a change of tissue, which
+/// end by themselves.
+const BEARABLE: f64 = 1.2;
 /// A force that stays the same to the last bit for this long (s), and for longer than the delay, while the hand moves comes
 /// from a sensor that renews its value more slowly. Until the next value, the last one is the best prediction.
 const STALE_S: f64 = 0.02;
@@ -18,6 +24,7 @@ const MOVES: f64 = 0.5;
 /// Forces (N) of one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldMixture {
+    pub(super) anchored: Lanes,
     /// Rendered without holding.
     pub(super) without: Lanes,
     pub(super) held: Lanes,
@@ -34,8 +41,14 @@ pub(super) struct Holding {
     rate_hz: f64,
     judged: f64,
     mean_error_n: Lanes,
+    /// Mean errors of holding, of rendering without it, and of anchored rendering.
+    held_error_n: Lanes,
+    without_error_n: Lanes,
+    anchored_error_n: Lanes,
     products: Lanes,
     squares: Lanes,
+    /// Of the terms of `squares`: together they give the number of terms that the regression rests on.
+    fourths: Lanes,
     held: Lanes,
     renewal: ForceRenewal,
 }
@@ -46,16 +59,20 @@ impl Holding {
             rate_hz,
             judged: 0.0,
             mean_error_n: Lanes::ZERO,
+            held_error_n: Lanes::ZERO,
+            without_error_n: Lanes::ZERO,
+            anchored_error_n: Lanes::ZERO,
             products: Lanes::ZERO,
             squares: Lanes::ZERO,
+            fourths: Lanes::ZERO,
             held: Lanes::ZERO,
             renewal: ForceRenewal::default(),
         }
     }
 
-    /// Mixes a rendered force (N) with the held one.
-    pub(super) fn mix(&self, without_n: Lanes, held_n: Lanes) -> HeldMixture {
-        HeldMixture { without: without_n, held: held_n, mixed: without_n + (held_n - without_n) * self.held }
+    /// Mixes the force that is rendered without holding with the held one.
+    pub(super) fn mix(&self, plain: HeldMixture) -> HeldMixture {
+        HeldMixture { mixed: plain.without + (plain.held - plain.without) * self.held, ..plain }
     }
 
     /// Takes a measured force (N) and the forces that were rendered for it `age` ticks ago, at this pace of the motion
@@ -63,23 +80,41 @@ impl Holding {
     pub(super) fn judge(&mut self, force_n: Lanes, said: &HeldMixture, pace: f64, age: usize) {
         self.judged += 1.0;
         let memory = MEMORY_S * self.rate_hz;
-        let error_n = (force_n - said.mixed).map(f64::abs);
         let fraction = newest_fraction(1.0, self.judged, memory);
-        self.mean_error_n = (self.mean_error_n + (error_n - self.mean_error_n) * fraction).settled();
+        let follow = |mean_n: &mut Lanes, said_n: Lanes| {
+            let error_n = (force_n - said_n).map(f64::abs);
+            *mean_n = (*mean_n + (error_n - *mean_n) * fraction).settled();
+        };
+        follow(&mut self.mean_error_n, said.mixed);
+        follow(&mut self.held_error_n, said.held);
+        follow(&mut self.without_error_n, said.without);
+        follow(&mut self.anchored_error_n, said.anchored);
         // Weighted by the usual error, because otherwise one strong contact outweighs all that follows.
         let weight = self.mean_error_n.recip_or_zero();
         let difference_n = said.held - said.without;
         let weighted = difference_n * weight;
         let fade = libm::exp(-1.0 / memory);
         self.products = (self.products * fade + weighted * (force_n - said.without)).settled();
-        self.squares = (self.squares * fade + weighted * difference_n).settled();
+        let term = weighted * difference_n;
+        self.squares = (self.squares * fade + term).settled();
+        self.fourths = (self.fourths * fade + term * term).settled();
         let held = self.products * self.squares.recip_or_zero();
-        let known = (self.judged / (RAMP_S * self.rate_hz)).min(1.0);
-        self.held = held.map(|held| ((held - CHANCE) / (1.0 - CHANCE)).clamp(0.0, 1.0) * known);
+        let terms = self.squares * self.squares * self.fourths.recip_or_zero();
+        let known = terms.map(|terms| (terms / (EVIDENCE_S * self.rate_hz)).min(1.0));
+        let used = held.map(|held| ((held - CHANCE) / (1.0 - CHANCE)).clamp(0.0, 1.0));
+        self.held = used * known * self.bearable();
         let same = self.renewal.step(force_n, pace > MOVES);
         if same > age && same as f64 > STALE_S * self.rate_hz {
             self.held = Lanes::splat(1.0);
         }
+    }
+
+    /// Returns 1 while holding errs about as much as the others, and 0 where it errs much more.
+    fn bearable(&self) -> Lanes {
+        let other_n = self.without_error_n.zip(self.anchored_error_n, f64::min);
+        let odds = self.held_error_n * (other_n * BEARABLE).recip_or_zero();
+        let eighth = eighth_power(odds);
+        (eighth * eighth).map(|odds| 1.0 / (1.0 + odds))
     }
 
     pub(super) fn reset(&mut self) {

@@ -1,6 +1,5 @@
 //! Weights of the experts: a softmin of their errors at the true prediction horizon.
 
-use super::best::eighth_power;
 use crate::signal::Lanes;
 
 /// Memory of the errors (s). Chosen as in `anchored.rs`.
@@ -60,6 +59,13 @@ impl<const EXPERTS: usize> Mixture<EXPERTS> {
     pub(super) fn reset(&mut self) {
         *self = Self::new(self.rate_hz);
     }
+}
+
+/// Returns the eighth power, which the softmin uses.
+pub(super) fn eighth_power(value: Lanes) -> Lanes {
+    let square = value * value;
+    let fourth = square * square;
+    fourth * fourth
 }
 
 #[cfg(test)]

@@ -37,10 +37,10 @@ use self::{
 };
 use super::{
     Mode,
-    best::eighth_power,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture},
     method::{FollowerEnd, MethodInput},
+    mixture::eighth_power,
     motion_clock::newest_fraction,
     settings::{ImpedanceSettings, MAX_DELAY_S, ModeSet},
 };

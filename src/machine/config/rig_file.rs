@@ -311,8 +311,10 @@ mod tests {
             file.exchange_sides(kind);
             assert_eq!(headers(&file.text()), headers(&before), "{kind:?}");
         }
-        let network = "# In the network; its readings come to the UDP port of the same number.\n[devices.right.sensor]";
-        assert!(file.text().contains(network), "a comment goes with its device:\n{}", file.text());
+        let comment = before.lines().take_while(|line| *line != "[devices.left.sensor]").last().unwrap();
+        assert!(comment.starts_with("# "), "the left sensor has a comment: {comment}");
+        let moved = format!("{comment}\n[devices.right.sensor]");
+        assert!(file.text().contains(&moved), "a comment goes with its device:\n{}", file.text());
         for kind in PartKind::OF_A_SIDE {
             file.exchange_sides(kind);
         }

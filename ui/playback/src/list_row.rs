@@ -18,8 +18,10 @@ use nima_words::{
 
 const BUTTON: egui::Vec2 = egui::vec2(74.0, 28.0);
 /// Range of the width of a note, and the width of the other columns with their longest usual values.
-const NOTE: std::ops::RangeInclusive<f32> = 180.0..=600.0;
-const OTHERS: f32 = 1010.0;
+const NOTE: std::ops::RangeInclusive<f32> = 80.0..=600.0;
+const OTHERS: f32 = 990.0;
+/// Width of a scene's name, which may have two lines.
+const SCENE: f32 = 110.0;
 /// The log of a larger file takes too long to read for a list.
 const LOG_READ_MAX: u64 = 500_000_000;
 
@@ -203,7 +205,10 @@ fn about_ui(ui: &mut Ui, row: &SessionListRow) {
             let rig = about.rig.as_deref().unwrap_or_default();
             let hover = format!("{rig}\n{}", path.display());
             ui.label(strong(text::playback::began(about.started.as_deref()))).on_hover_text(hover);
-            ui.label(row.scene());
+            ui.scope(|ui| {
+                ui.set_max_width(SCENE);
+                ui.add(egui::Label::new(row.scene()).wrap());
+            });
             ui.label(weak(row.mode()));
             let part = about.stretch_from_s.map(|from_s| format!(" {}", text::playback::stretch(from_s)));
             // The length of a session that is being recorded grows, but the list does not.

@@ -175,6 +175,7 @@ mod tests {
         let delays = DELAYS_MS.len();
         let jitters = JITTERS.len();
         let losses = 1 + 5 * (1 + BURSTS_MS.len());
-        assert_eq!(planned(PlanExtent::Full, &[]).len(), delays * jitters * losses * LinkEvent::ALL.len() * 12);
+        let modes = Mode::ALL.len() + Mode::BASELINES.into_iter().count();
+        assert_eq!(planned(PlanExtent::Full, &[]).len(), delays * jitters * losses * LinkEvent::ALL.len() * modes);
     }
 }

@@ -140,7 +140,7 @@ fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
     assert!(now.arm.flange_from_s1.rotation.angle_to(&before.arm.flange_from_s1.rotation) < 1e-9);
     assert_eq!(std::path::Path::new(&bench.rig_name), bench.folder.path().join("rigs/emulated-2.toml"));
     let text = std::fs::read_to_string(&bench.rig_name).unwrap();
-    assert!(text.contains("# The mirror image."), "comments stay");
+    assert!(text.contains("# Mirror image of the right arm's mount."), "comments stay");
 
     assert_eq!(bench.wizard.undoable.len(), 2, "{:?}", bench.wizard.undoable);
     bench.undo();

@@ -34,19 +34,26 @@ fn serving(joints: usize) -> (EmulatorThread, ExternalSettings) {
     (arm.with(StandIn::at(at)).serve().unwrap(), ExternalSettings::at(free))
 }
 
-/// Polls for this long, leading all joints to this angle once the arm follows.
+/// Greatest step of a target between two commands, rad: 0.2 rad/s at 1 kHz.
+const STEP_RAD: f64 = 2e-4;
+
+/// Polls for this long, leading all joints to this angle in small steps once the arm follows.
 fn lead(arm: &mut ExternalArm, begin: Instant, length: Duration, target_rad: Option<f64>) -> Option<[f64; 7]> {
     let end = Instant::now() + length;
-    let mut newest = None;
+    let mut newest: Option<[f64; ARM_JOINTS]> = None;
+    let mut led_rad = None;
     while Instant::now() < end {
         if let Some(reading) = arm.poll(begin.elapsed().as_secs_f64()) {
             newest = Some(reading.value.joint_rad);
         }
-        if let Some(rad) = target_rad {
+        if let (Some(end_rad), Some(measured_rad)) = (target_rad, newest) {
             arm.enter_servoing();
-            let mut target = [rad; ARM_JOINTS];
-            target[6] = 0.0;
-            arm.aim(&target);
+            let mut target: [f64; ARM_JOINTS] = led_rad.unwrap_or(measured_rad);
+            for rad in &mut target[..6] {
+                *rad += (end_rad - *rad).clamp(-STEP_RAD, STEP_RAD);
+            }
+            // Refused until the arm reports that it follows.
+            led_rad = arm.aim(&target).then_some(target);
         }
         std::thread::sleep(Duration::from_millis(1));
     }

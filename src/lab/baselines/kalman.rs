@@ -23,14 +23,13 @@ pub(crate) struct KalmanTuning {
     bandwidth_hz: f64,
 }
 
-/// Tunings for delays up to 20, 80 and 250 ms, and beyond (chosen on recordings, see docs/modes.md).
-const TUNINGS: [KalmanTuning; 4] = [
+/// Tunings for delays up to 20 and 250 ms, and beyond (chosen on recordings, see docs/modes.md).
+const TUNINGS: [KalmanTuning; 3] = [
     KalmanTuning { lasting_s: 0.01, bandwidth_hz: 100.0 },
     KalmanTuning { lasting_s: 0.005, bandwidth_hz: 100.0 },
-    KalmanTuning { lasting_s: 0.015, bandwidth_hz: 1.0 },
     KalmanTuning { lasting_s: 0.015, bandwidth_hz: 3.0 },
 ];
-const MAX_DELAYS_S: [f64; 3] = [0.02, 0.08, 0.25];
+const MAX_DELAYS_S: [f64; 2] = [0.02, 0.25];
 /// The tuning of sessions with an earlier journal, at every delay.
 const EARLIER: usize = 1;
 

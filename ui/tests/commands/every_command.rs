@@ -220,7 +220,7 @@ fn identify_refuses_bad_recordings_and_writes_nothing() {
     refuse(&nan, &[], &["line 702", "NaN"]);
     refuse(&back, &[], &["line 802", "the time steps back by 0.699 s", "split the file"]);
     refuse(&short, &[], &["200 samples", "300 ms"]);
-    refuse(&good, &["--window-ms", "2"], &["window"]);
+    refuse(&good, &["--window-ms", "2", "--mode", "nima"], &["window"]);
     refuse(&good, &["--delay-ms", "5000"], &["delay"]);
     refuse(&good, &["--delay-ms", "-1"], &["delay"]);
     refuse(&good, &["--delay-ms", "0.4"], &["0.4 ms", "half a sample", "0 or at least 0.500 ms"]);

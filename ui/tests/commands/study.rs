@@ -115,7 +115,7 @@ fn the_methods_of_others_are_compared_on_a_recording() {
     assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     let means = report["means"].as_array().unwrap();
-    assert_eq!(means.len(), 2 * 10);
+    assert_eq!(means.len(), 2 * 11);
     for mean in means {
         assert_eq!((mean["split"].as_str(), mean["sources"].as_u64()), (Some("held_out"), Some(1)), "{mean}");
         assert!(mean["mean"].as_f64().unwrap() > 0.0 && mean["low"].is_null(), "one recording has no interval: {mean}");
@@ -124,7 +124,7 @@ fn the_methods_of_others_are_compared_on_a_recording() {
     assert!(model["mean"].as_f64().unwrap() < 0.3, "{model}");
     let table = std::fs::read_to_string(out.join("baselines.md")).unwrap();
     assert!(table.contains("Held-out split") && table.contains("| kalman |"), "{table}");
-    assert_eq!(std::fs::read_to_string(out.join("baselines.csv")).unwrap().lines().count(), 1 + 20);
+    assert_eq!(std::fs::read_to_string(out.join("baselines.csv")).unwrap().lines().count(), 1 + 22);
 
     refused(&["study", "baselines", "--recording", "nowhere.csv"], "nowhere.csv");
     refused(&["study", "baselines", "--map", "x=a"], "--recording");

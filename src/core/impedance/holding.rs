@@ -6,7 +6,7 @@ use crate::signal::Lanes;
 /// Memory of the judgement (s); 2 to 5 s perform equally well.
 const MEMORY_S: f64 = 5.0;
 /// Time (s) of about equal differences between the two forces after which the judgement counts in full. A single touch of
-/// new tissue, where both forces are wrong for some 0.1 s, is no evidence. With 1.5 s, `best` is 0.2 % worse than anchored
+/// new tissue, where both forces are wrong for some 0.1 s, proves nothing. With 1.5 s, `best` is 0.2 % worse than anchored
 /// rendering over tissue that changes at each touch; with 0.3 s, it is up to 6 % worse.
 const EVIDENCE_S: f64 = 2.5;
 /// A smaller fraction of the held force is chance, and is not used.
@@ -47,7 +47,7 @@ pub(super) struct Holding {
     anchored_error_n: Lanes,
     products: Lanes,
     squares: Lanes,
-    /// Of the terms of `squares`: together they give the number of terms that the regression rests on.
+    /// Sum of the squared terms of `squares`: both sums give the number of terms that the regression is based on.
     fourths: Lanes,
     held: Lanes,
     renewal: ForceRenewal,

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::{CodecError, WordSink, WordSource};
 
-/// Maximum length of a column, in words: no block has more ticks.
+/// Maximum length of a column, in values of 64 bits: no block has more ticks.
 const WORDS_MAX: u64 = 4096;
 
 #[derive(Clone, Debug, Default)]

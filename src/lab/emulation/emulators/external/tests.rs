@@ -34,7 +34,7 @@ fn serving(joints: usize) -> (EmulatorThread, ExternalSettings) {
     (arm.with(StandIn::at(at)).serve().unwrap(), ExternalSettings::at(free))
 }
 
-/// Greatest step of a target between two commands, rad: 0.2 rad/s at 1 kHz.
+/// Maximum step of a target between two commands, rad: 0.2 rad/s at 1 kHz.
 const STEP_RAD: f64 = 2e-4;
 
 /// Polls for this long, leading all joints to this angle in small steps once the arm follows.

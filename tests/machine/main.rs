@@ -12,6 +12,7 @@ mod ready_check;
 mod rings;
 mod simulated_calibration;
 mod simulated_experiments;
+mod slow_arm;
 mod structure;
 mod tip_force_loop;
 mod training;

@@ -18,7 +18,7 @@ use crate::rig::{DeviceOffer, PartKind, RigPart, Side};
 /// let mut file = RigFile::of("emulated")?;
 /// file.set("devices.right.sensor.serial_number", "4711");
 /// assert_eq!(file.rig()?.name, "Emulated rig");
-/// assert!(file.text().contains("# The mirror image."), "comments are kept");
+/// assert!(file.text().contains("# Mirror image of the right arm's mount."), "comments are kept");
 ///
 /// file.set("rate_hz", 1.0);
 /// assert!(file.rig().is_err(), "an impossible rig is refused");

@@ -13,7 +13,9 @@ use super::{
 };
 use crate::{
     messages::{LoopState, PeerStatus},
-    rig::{EngageBlocker, Inputs, Outputs, RemoteIdentification, SIDES, SensedForce, Side, ViewOrientation},
+    rig::{
+        EngageBlocker, Inputs, Outputs, PlannedTip, RemoteIdentification, SIDES, SensedForce, Side, ViewOrientation,
+    },
 };
 
 #[derive(Debug)]
@@ -94,6 +96,7 @@ impl FollowerThere {
             gripper_rad: here.gripper_rad,
             grip_n: far.grip_n,
             tip_m: far.tip_m,
+            planned: PlannedTip::default(),
             world_from_jaws: far.world_from_jaws,
             sensed: SensedForce::FarEnd(identified),
             // No view crosses the link, so the mapping of the rig file applies.

@@ -132,7 +132,7 @@ mod tests {
         assert!(absent.starts_with("devices.right.model.urdf = ur6.urdf: "), "{absent}");
         let link = cause(&text.replace("tool0", "tool1"));
         assert!(link.contains("flange_link") && !link.contains('\n'), "{link}");
-        let fast = cause(&text.replace("flange_link", "acceleration_rad_s2 = 500.0\nflange_link"));
+        let fast = cause(&text.replace("acceleration_rad_s2 = 5.0", "acceleration_rad_s2 = 500.0"));
         assert!(fast.contains("acceleration"), "{fast}");
         let mut set = RigConfig::load(EXAMPLE).unwrap().devices.unwrap().right.unwrap();
         set.model.as_mut().unwrap().chain = None;

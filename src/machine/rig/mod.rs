@@ -130,6 +130,11 @@ impl ViewOrientation {
     }
 }
 
+/// Tip position that the arm was commanded, m, within the limits of joints and trocar, so it may be behind the command of
+/// the hand. `None` without a plan here: the arm is simulated, at rest, or at another machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlannedTip(pub Option<Vector3<f64>>);
+
 /// The measurements of an arm pair at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
@@ -139,6 +144,8 @@ pub struct Inputs {
     /// Force that opens the jaws, N at the finger, if known.
     pub grip_n: Option<f64>,
     pub tip_m: Vector3<f64>,
+    /// Tip position that the arm was commanded one tick ago.
+    pub planned: PlannedTip,
     /// Orientation of the instrument's jaws, if known.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
     pub sensed: SensedForce,
@@ -167,6 +174,7 @@ impl Inputs {
         gripper_rad: None,
         grip_n: None,
         tip_m: Vector3::new(0.0, 0.0, 0.0),
+        planned: PlannedTip(None),
         world_from_jaws: None,
         sensed: SensedForce::AtTip(Vector3::new(0.0, 0.0, 0.0)),
         view: ViewOrientation::Fixed,
@@ -200,6 +208,7 @@ impl Inputs {
         sensed
             && self.hand.is_finite()
             && self.tip_m.iter().all(|x| x.is_finite())
+            && self.planned.0.is_none_or(|tip_m| tip_m.iter().all(|x| x.is_finite()))
             && self.world_from_jaws.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
             && self.gripper_rad.is_none_or(f64::is_finite)
             && self.grip_n.is_none_or(f64::is_finite)

@@ -24,6 +24,10 @@ const GRIPPER_ARM_M: f64 = 0.048;
 /// Duration of the force ramp after each engagement, s: a force must not begin as a step in the hand. Design choice.
 /// Shorter ramps are felt as a knock, longer ones hide the first contact.
 const RAMP_S: f64 = 0.2;
+/// Maximum distance between the command and the planned tip ([`PlannedTip`](crate::rig::PlannedTip)), m, where a plan is
+/// known. Without it, an arm that is slowed down by its limits would be far from the position from which the force is
+/// computed. Half of the distance at which the plausibility check reports an arm as lost.
+const AHEAD_MAX_M: f64 = 0.01;
 
 #[derive(Clone, Debug)]
 pub(super) struct LeaderHalf {
@@ -31,7 +35,7 @@ pub(super) struct LeaderHalf {
     pub(super) hand_eye: HandEyeCoupling,
     /// Maximum travel of the command in a tick, m.
     step_max_m: f64,
-    command_m: Option<Vector3<f64>>,
+    pub(super) command_m: Option<Vector3<f64>>,
     pub(super) modes: Modes,
     pub(super) renderer: Renderer,
     own_motion: OwnMotion,
@@ -80,7 +84,8 @@ impl LeaderHalf {
         })
     }
 
-    /// Returns the command to the follower: the hand's position, limited to the follower's maximum speed.
+    /// Returns the command to the follower: the hand's position, limited to the follower's maximum speed and, if the arm
+    /// is planned here, to a distance from the plan.
     pub(super) fn lead(&mut self, seen: &Inputs) -> TipLead {
         let target = self.hand_eye.step(&seen.hand);
         if !self.hand_eye.is_engaged() {
@@ -92,7 +97,10 @@ impl LeaderHalf {
         let length_m = path_m.norm();
         // Shortened along the path, not per axis, so that the tip keeps the direction of the hand.
         let fraction = if length_m > self.step_max_m { self.step_max_m / length_m } else { 1.0 };
-        self.command_m = Some(from_m + path_m * fraction);
+        let led_m = from_m + path_m * fraction;
+        let planned_m = seen.planned.0.unwrap_or(led_m);
+        let ahead_m = led_m - planned_m;
+        self.command_m = Some(planned_m + ahead_m * (AHEAD_MAX_M / ahead_m.norm().max(AHEAD_MAX_M)));
         TipLead { target, tip_m: self.command_m }
     }
 

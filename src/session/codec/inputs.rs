@@ -11,7 +11,8 @@ use nima_core::{
 use nima_machine::{
     messages::{FarStop, ForceSource},
     rig::{
-        AwaitedDevice, EngageBlocker, Inputs, RemoteIdentification, SensedForce, SideSwap, Switches, ViewOrientation,
+        AwaitedDevice, EngageBlocker, Inputs, PlannedTip, RemoteIdentification, SensedForce, SideSwap, Switches,
+        ViewOrientation,
     },
     teleop::Timing,
 };
@@ -25,6 +26,7 @@ record!(Inputs {
     gripper_rad: Option<f64>,
     grip_n: Option<f64>,
     tip_m: Vector3<f64>,
+    planned: PlannedTip,
     world_from_jaws: Option<UnitQuaternion<f64>>,
     sensed: SensedForce,
     view: ViewOrientation,
@@ -36,6 +38,19 @@ record!(Inputs {
     silent_s: f64,
     raw: RawReadings,
 });
+
+/// Without columns here: those of both sides are the last ones of a row, which older journals lack.
+impl ToWords for PlannedTip {
+    const COLUMNS: usize = 0;
+
+    fn put(&self, _: &mut impl WordSink) {}
+}
+
+impl FromWords for PlannedTip {
+    fn take(_: &mut impl WordSource) -> Result<Self, CodecError> {
+        Ok(Self::default())
+    }
+}
 
 record!(RawReadings {
     handle: Option<RawReading<HANDLE_CHANNELS>>,

@@ -1,8 +1,9 @@
 //! Ticks of a journal, in columns.
 
+use nalgebra::Vector3;
 use nima_machine::{
     messages::Event,
-    rig::{Inputs, SIDES},
+    rig::{Inputs, PlannedTip, SIDES},
     runtime::{Operation, TickRecord},
     teleop::Timing,
 };
@@ -47,7 +48,11 @@ pub struct TickRow {
     pub check: DigestCheck,
 }
 
+// The columns of every version; `Plans` follow.
 record!(TickRow { timing: Timing, inputs: [Option<Inputs>; SIDES], check: DigestCheck });
+
+/// Commanded tip positions of both sides ([`PlannedTip`]), m, from version 6 on.
+type Plans = [Option<Vector3<f64>>; SIDES];
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct JournalBlock {
@@ -59,13 +64,20 @@ pub struct JournalBlock {
 }
 
 impl JournalBlock {
-    pub(super) fn take(from: &mut &[u8]) -> Result<Self, CodecError> {
+    pub(super) fn take(from: &mut &[u8], with_plans: bool) -> Result<Self, CodecError> {
         let (first_tick, rows, noted) = take_head(from)?;
-        let columns = UnpackedColumns::of(from, TickRow::COLUMNS)?;
+        let columns = UnpackedColumns::of(from, TickRow::COLUMNS + if with_plans { Plans::COLUMNS } else { 0 })?;
         let mut source = columns.rows();
         let mut row = || {
             source.next_row();
-            TickRow::take(&mut source)
+            let mut row = TickRow::take(&mut source)?;
+            let plans = if with_plans { Plans::take(&mut source)? } else { Plans::default() };
+            for (inputs, planned_m) in row.inputs.iter_mut().zip(plans) {
+                if let Some(inputs) = inputs {
+                    inputs.planned = PlannedTip(planned_m);
+                }
+            }
+            Ok(row)
         };
         let rows = (0..rows).map(|_| row()).collect::<Result<_, _>>()?;
         source.end()?;
@@ -124,6 +136,7 @@ impl BlockWriter {
     pub fn tick(&mut self, row: &TickRow) {
         self.columns.next_row();
         row.put(&mut self.columns);
+        row.inputs.each_ref().map(|inputs| inputs.as_ref()?.planned.0).put(&mut self.columns);
         self.rows += 1;
     }
 

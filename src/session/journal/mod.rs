@@ -23,14 +23,16 @@ use parts::ByteWriter;
 
 /// Version of the journal that this program writes.
 ///
-/// Version 6 has the format of version 5, which contains the raw readings of the devices and the true time of each tick.
-/// It was introduced when `best` began to hold forces that motion does not explain, and when wrong positions and gaps
-/// were bridged. A journal of version 5 is replayed without these changes
+/// Version 5 contains the raw readings of the devices and the true time of each tick; version 6 also the commanded tip
+/// positions. It was introduced when `best` began to hold forces that motion does not explain, and when wrong positions
+/// and gaps were bridged. A journal of version 5 is replayed without these changes
 /// ([`earlier_forces`](nima_core::impedance::ImpedanceSettings::earlier_forces)), because they would give other forces
 /// than the hand felt.
 pub const VERSION: u16 = 6;
 /// The oldest version that is read.
 const OLDEST: u16 = 5;
+/// The oldest version with [`PlannedTip`](nima_machine::rig::PlannedTip)s.
+const PLANS_FROM: u16 = 6;
 
 // A tick has a column for each mode and gate, and a number for each reason, so the journal's format depends on these
 // counts.
@@ -184,7 +186,7 @@ pub fn decode(bytes: &[u8]) -> Result<(u64, JournalMessage), JournalError> {
             let number = crate::codec::take_number(body)?;
             JournalMessage::Calibrations { number, calibrations: parts::take_calibrations(body)? }
         }
-        BLOCK => JournalMessage::Block(JournalBlock::take(body)?),
+        BLOCK => JournalMessage::Block(JournalBlock::take(body, version >= PLANS_FROM)?),
         END => JournalMessage::End(JournalEnd::take(body)?),
         _ => return Err(CodecError::NoSuchValue.into()),
     };

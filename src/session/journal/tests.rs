@@ -14,8 +14,8 @@ use nima_machine::{
     config::RigConfig,
     messages::{Command, FarStop, ForceSource, Watchdog},
     rig::{
-        AwaitedDevice, DeviceEvent, EngageBlocker, Inputs, Prompt, RemoteIdentification, SensedForce, Side, SideSwap,
-        Switches, TaskAction, ViewOrientation,
+        AwaitedDevice, DeviceEvent, EngageBlocker, Inputs, PlannedTip, Prompt, RemoteIdentification, SensedForce, Side,
+        SideSwap, Switches, TaskAction, ViewOrientation,
     },
     runtime::Operation,
     teleop::{Calibrations, LoopOrigin, Timing},
@@ -23,10 +23,13 @@ use nima_machine::{
 use proptest::prelude::*;
 
 use super::{
-    BlockWriter, JournalEncoder, JournalEnd, JournalError, JournalMessage, JournalStart, TickNote, TickRow, VERSION,
-    decode,
+    BlockWriter, JournalBlock, JournalEncoder, JournalEnd, JournalError, JournalMessage, JournalStart, TickNote,
+    TickRow, VERSION, decode,
 };
-use crate::digest::{DigestCheck, STAGES};
+use crate::{
+    codec::{BlockColumns, ToWords as _, number as number_to},
+    digest::{DigestCheck, STAGES},
+};
 
 /// Generates numbers that a working or faulty device may return. Compared by their bits.
 fn number() -> impl Strategy<Value = f64> {
@@ -153,7 +156,7 @@ fn reading<const N: usize>() -> BoxedStrategy<RawReading<N>> {
 
 fn inputs() -> BoxedStrategy<Inputs> {
     let hand = (vector(), maybe(rotation()), maybe(number()), maybe(number()));
-    let tip = (vector(), maybe(rotation()), sensed());
+    let tip = (vector(), maybe(vector()), maybe(rotation()), sensed());
     let view = prop_oneof![
         Just(ViewOrientation::Fixed),
         Just(ViewOrientation::Unseen),
@@ -166,13 +169,14 @@ fn inputs() -> BoxedStrategy<Inputs> {
     (hand, tip, rest, raw)
         .prop_map(|(hand, tip, rest, raw)| {
             let (position_m, orientation, gripper_rad, grip_n) = hand;
-            let (tip_m, world_from_jaws, sensed) = tip;
+            let (tip_m, planned_m, world_from_jaws, sensed) = tip;
             let (view, frames, clutch, presence, powered, obstacle, (age_s, silent_s)) = rest;
             Inputs {
                 hand: HandPose { position_m, orientation },
                 gripper_rad,
                 grip_n,
                 tip_m,
+                planned: PlannedTip(planned_m),
                 world_from_jaws,
                 sensed,
                 view,
@@ -381,6 +385,27 @@ fn what_is_no_journal_of_this_version_is_named() {
     assert_eq!(decode(&bytes).unwrap_err(), JournalError::Version { found: VERSION + 1 });
     assert_eq!(decode(b"time,force\n0,1\n").unwrap_err(), JournalError::Foreign);
     assert_eq!(decode(&[]).unwrap_err(), JournalError::Foreign);
+}
+
+#[test]
+fn a_block_of_the_version_before_is_read_without_the_commanded_tips() {
+    let rows = [2.0, 3.0].map(|tip_m| TickRow {
+        timing: Timing::default(),
+        inputs: [Some(Inputs { tip_m: Vector3::repeat(tip_m), ..Inputs::NOTHING }), None],
+        check: DigestCheck { all: 7, stages: [[1; STAGES]; 2] },
+    });
+    let mut columns = BlockColumns::default();
+    for row in &rows {
+        columns.next_row();
+        row.put(&mut columns);
+    }
+    let mut bytes = Vec::new();
+    for count in [9, rows.len() as u64, 0] {
+        number_to(&mut bytes, count);
+    }
+    columns.pack(&mut bytes);
+    let block = JournalBlock::take(&mut bytes.as_slice(), false).unwrap();
+    assert_eq!((block.first_tick, block.rows.as_slice()), (9, &rows[..]));
 }
 
 #[test]

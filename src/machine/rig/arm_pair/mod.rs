@@ -15,7 +15,7 @@ use super::{
     jaws::JawsControl,
     starting::{servos_opener, start},
 };
-use crate::rig::{Inputs, Outputs, Roster, Side, ViewOrientation};
+use crate::rig::{Inputs, Outputs, PlannedTip, Roster, Side, ViewOrientation};
 
 pub use measured::{DeliveringDevices, SideReadings};
 
@@ -164,7 +164,8 @@ impl ArmPair {
         let follower = self.follower.as_ref().map(|slots| is_there(&slots.arm) && is_there(&slots.sensor));
         let delivering = DeliveringDevices { handle: self.handle.as_ref().map(is_there), follower };
         let jaws = self.servos.as_ref().map(|(slot, control)| (control, is_there(slot)));
-        self.measured.with(now_s, delivering, jaws, shared)
+        let planned = PlannedTip(self.inverse.as_ref().map(|inverse| inverse.pose().tip_m));
+        self.measured.with(now_s, delivering, jaws, shared).map(|inputs| Inputs { planned, ..inputs })
     }
 
     /// Returns the poses of arm and marker while the drives are off; `c_from_m` is the marker as measured by the

@@ -149,7 +149,11 @@ impl<L: Link> Pair<L> {
             // With a delay between command and tip, the command to which this tip responds is an older one.
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
-            command_m: self.leader.command_behind_m(self.link.behind(silent_s), silent_s),
+            command_m: match inputs.planned.0 {
+                // The plan is what the arm was commanded; the limits of the arm may keep it behind the hand's command.
+                Some(planned_m) => self.leader.command_m.map(|_| planned_m),
+                None => self.leader.command_behind_m(self.link.behind(silent_s), silent_s),
+            },
             hand_force_n: self.leader.hand_force_n,
             guided: self.screen.guide_m.is_some(),
             // Only one half is remote, and only its data can be silent.

@@ -56,6 +56,9 @@ pub enum DeviceError {
     WrongBaud { place: String, baud: u32 },
     #[error("{place} is open but sends nothing")]
     Silent { place: String },
+    /// Readings arrive, but each is too old for control when it does.
+    #[error("the readings from {place} arrive too late")]
+    Late { place: String },
     #[error("no device program sends to {place}")]
     NobodySends { place: String },
     /// The program sends data, but its datagrams show that it receives no answers.
@@ -145,6 +148,9 @@ impl DeviceError {
             }
             Self::WrongBaud { .. } => "Enter the device's speed as `baud` in the rig file.".to_owned(),
             Self::Silent { .. } => "Switch the device on, and check its cable and that it is configured to send.".to_owned(),
+            Self::Late { .. } => {
+                "Connect the device without a busy network in between, and check that its program sends at once.".to_owned()
+            }
             Self::NobodySends { .. } => {
                 "Start the device program and configure it to send to this address; see docs/external-device.md.".to_owned()
             }

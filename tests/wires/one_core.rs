@@ -59,11 +59,14 @@ fn a_queue_is_never_waited_for_by_a_thread_of_higher_priority_on_the_same_proces
     let (mut to, from) = from_loop(64);
     let rounds = Arc::new(AtomicU64::new(0));
     let ends = Arc::new(AtomicBool::new(false));
+    let pinned = Arc::new(AtomicU64::new(0));
     let sender = thread::spawn({
         let rounds = Arc::clone(&rounds);
         let ends = Arc::clone(&ends);
+        let pinned = Arc::clone(&pinned);
         move || {
             pin_with("80")?;
+            pinned.fetch_add(1, Relaxed);
             while !ends.load(Relaxed) {
                 for value in 0..ROUND {
                     to.push([value; 4]).ok();
@@ -76,8 +79,10 @@ fn a_queue_is_never_waited_for_by_a_thread_of_higher_priority_on_the_same_proces
     });
     let receiver = thread::spawn({
         let ends = Arc::clone(&ends);
+        let pinned = Arc::clone(&pinned);
         move || {
             pin_with("82")?;
+            pinned.fetch_add(1, Relaxed);
             while !ends.load(Relaxed) {
                 // Interrupts the other thread anywhere in its operation.
                 from.try_iter().take(ROUND).for_each(drop);
@@ -86,6 +91,10 @@ fn a_queue_is_never_waited_for_by_a_thread_of_higher_priority_on_the_same_proces
             Ok::<_, String>(())
         }
     });
+    // Starting the threads takes long on a busy machine; that says nothing about the queue.
+    while pinned.load(Relaxed) < 2 && !sender.is_finished() && !receiver.is_finished() {
+        thread::sleep(Duration::from_millis(1));
+    }
     let began = Instant::now();
     let mut newest = (0, began);
     while began.elapsed() < Duration::from_secs(3) && !sender.is_finished() && !receiver.is_finished() {

@@ -387,8 +387,9 @@ fn flaws_of_real_devices_break_the_verdicts_that_the_pages_say() {
     }
     for (name, [gravity, correspondence], reported) in &found {
         assert_eq!(reported.gravity, *gravity, "{name}: {reported:?}");
-        // A refused gravity may pass by chance: a drift is removed from the poses, and the motion that follows is short.
-        assert!(reported.passes || *gravity != Verdict::Accepted, "{name}: {reported:?}");
+        // The drift is removed from the poses, so the free motion, which is short, passes although gravity is refused.
+        let passes = *gravity == Verdict::Accepted || *name == "drift_n_per_min = 1";
+        assert_eq!(reported.passes, passes, "{name}: {reported:?}");
         assert_eq!(reported.correspondence, Some(*correspondence), "{name}: {reported:?}");
         assert!(*correspondence != Verdict::Accepted || reported.off_deg < 2.0, "{name}: {reported:?}");
     }

@@ -109,9 +109,7 @@ fn calls_of(plan: &SimulationPlan) -> LoopCalls {
     };
     let began = Instant::now();
     while look().0 != LoopState::Engaged {
-        if began.elapsed() > ENGAGED_MAX {
-            too_busy();
-        }
+        assert!(began.elapsed() <= ENGAGED_MAX, "it never engages");
     }
     taken();
     watches.store(true, Relaxed);

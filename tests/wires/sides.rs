@@ -18,7 +18,7 @@ use nima_machine::{
 };
 use nima_recording::store::{CheckedDevice, ReadyRecord};
 use nima_simulation::{SimulationPlan, scene::Scene};
-use nima_testing::real_time::{alone, judged, too_busy};
+use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{at_tip, started};
 
 const TIMEOUT: Duration = Duration::from_secs(12);
@@ -293,15 +293,13 @@ impl Machine {
     fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
         let begin = Instant::now();
         while !good(self) {
-            if begin.elapsed() > TIMEOUT {
-                eprintln!(
-                    "never: {what}; {:?}; {:?}; {:?}",
-                    self.troubles(),
-                    self.healths.obstacles,
-                    self.refusals.last()
-                );
-                too_busy();
-            }
+            assert!(
+                begin.elapsed() <= TIMEOUT,
+                "never: {what}; {:?}; {:?}; {:?}",
+                self.troubles(),
+                self.healths.obstacles,
+                self.refusals.last()
+            );
             self.look();
         }
     }

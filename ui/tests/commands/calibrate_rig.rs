@@ -75,9 +75,7 @@ fn without_calibrations_the_devices_run_and_one_line_says_what_is_missing() {
     judged(|| {
         let (figures, report) = home.run("5");
         let lines: Vec<_> = report.lines().filter(|line| line.contains("not calibrated")).collect();
-        if lines.is_empty() || figures["ticks"].as_u64().unwrap_or(0) < 1000 {
-            too_busy();
-        }
+        assert!(!lines.is_empty() && figures["ticks"].as_u64().unwrap_or(0) >= 1000, "{report}");
         println!("{report}");
         // A sensor that was opened late adds its own line.
         let all = lines.last().unwrap();
@@ -106,10 +104,8 @@ fn a_sensor_or_a_tool_in_anothers_place_is_told_at_the_start() {
         judged(|| {
             let (figures, report) = home.run("5");
             println!("{report}");
-            let Some(line) = report.lines().rfind(|line| line.contains("not calibrated")) else { too_busy() };
-            if !line.contains("SN000901") || !line.contains("SN000902") {
-                too_busy();
-            }
+            let line = report.lines().rfind(|line| line.contains("not calibrated")).unwrap();
+            assert!(line.contains("SN000901") && line.contains("SN000902"), "{line}");
             for words in words {
                 assert!(line.contains(words), "{words}: {report}");
             }

@@ -64,10 +64,11 @@ impl<'a> Day<'a> {
                 self.click(place);
                 last = Instant::now();
             }
-            if last.elapsed() > PATIENCE {
-                println!("{what}: no button is highlighted any more; there are {:?}", self.files("calibrations"));
-                nima_testing::real_time::too_busy();
-            }
+            assert!(
+                last.elapsed() <= PATIENCE,
+                "{what}: no button is highlighted any more; there are {:?}",
+                self.files("calibrations")
+            );
             thread::sleep(Duration::from_millis(300));
         }
     }

@@ -1,6 +1,6 @@
 //! The fraction of the held force in a rendered force: the judgement of holding.
 
-use super::{mixture::eighth_power, motion_clock::newest_fraction};
+use super::motion_clock::newest_fraction;
 use crate::signal::Lanes;
 
 /// Memory of the judgement (s); 2 to 5 s perform equally well.
@@ -11,10 +11,6 @@ const MEMORY_S: f64 = 5.0;
 const EVIDENCE_S: f64 = 2.5;
 /// A smaller fraction of the held force is chance, and is not used.
 const CHANCE: f64 = 0.1;
-/// Holding is given up where its error exceeds this many times that of the better of rendering without it and anchored
-/// rendering: a regression over some seconds also finds a fraction of it in the errors right after a change of tissue, which
-/// end by themselves.
-const BEARABLE: f64 = 1.2;
 /// A force that stays the same to the last bit for this long (s), and for longer than the delay, while the hand moves comes
 /// from a sensor that renews its value more slowly. Until the next value, the last one is the best prediction.
 const STALE_S: f64 = 0.02;
@@ -41,10 +37,6 @@ pub(super) struct Holding {
     rate_hz: f64,
     judged: f64,
     mean_error_n: Lanes,
-    /// Mean errors of holding, of rendering without it, and of anchored rendering.
-    held_error_n: Lanes,
-    without_error_n: Lanes,
-    anchored_error_n: Lanes,
     products: Lanes,
     squares: Lanes,
     /// Sum of the squared terms of `squares`: both sums give the number of terms that the regression is based on.
@@ -59,9 +51,6 @@ impl Holding {
             rate_hz,
             judged: 0.0,
             mean_error_n: Lanes::ZERO,
-            held_error_n: Lanes::ZERO,
-            without_error_n: Lanes::ZERO,
-            anchored_error_n: Lanes::ZERO,
             products: Lanes::ZERO,
             squares: Lanes::ZERO,
             fourths: Lanes::ZERO,
@@ -81,14 +70,8 @@ impl Holding {
         self.judged += 1.0;
         let memory = MEMORY_S * self.rate_hz;
         let fraction = newest_fraction(1.0, self.judged, memory);
-        let follow = |mean_n: &mut Lanes, said_n: Lanes| {
-            let error_n = (force_n - said_n).map(f64::abs);
-            *mean_n = (*mean_n + (error_n - *mean_n) * fraction).settled();
-        };
-        follow(&mut self.mean_error_n, said.mixed);
-        follow(&mut self.held_error_n, said.held);
-        follow(&mut self.without_error_n, said.without);
-        follow(&mut self.anchored_error_n, said.anchored);
+        let error_n = (force_n - said.mixed).map(f64::abs);
+        self.mean_error_n = (self.mean_error_n + (error_n - self.mean_error_n) * fraction).settled();
         // Weighted by the usual error, because otherwise one strong contact outweighs all that follows.
         let weight = self.mean_error_n.recip_or_zero();
         let difference_n = said.held - said.without;
@@ -102,19 +85,11 @@ impl Holding {
         let terms = self.squares * self.squares * self.fourths.recip_or_zero();
         let known = terms.map(|terms| (terms / (EVIDENCE_S * self.rate_hz)).min(1.0));
         let used = held.map(|held| ((held - CHANCE) / (1.0 - CHANCE)).clamp(0.0, 1.0));
-        self.held = used * known * self.bearable();
+        self.held = used * known;
         let same = self.renewal.step(force_n, pace > MOVES);
         if same > age && same as f64 > STALE_S * self.rate_hz {
             self.held = Lanes::splat(1.0);
         }
-    }
-
-    /// Returns 1 while holding errs about as much as the others, and 0 where it errs much more.
-    fn bearable(&self) -> Lanes {
-        let other_n = self.without_error_n.zip(self.anchored_error_n, f64::min);
-        let odds = self.held_error_n * (other_n * BEARABLE).recip_or_zero();
-        let eighth = eighth_power(odds);
-        (eighth * eighth).map(|odds| 1.0 / (1.0 + odds))
     }
 
     pub(super) fn reset(&mut self) {

@@ -172,6 +172,12 @@ impl Inverse {
         self.ahead_rad = self.joint_rad - measured_rad;
     }
 
+    /// Returns whether a joint is so far from its command that the plan waits for it: the arm is blocked, or slower than
+    /// its limits say.
+    pub fn is_blocked(&self) -> bool {
+        self.ahead_rad.iter().any(|ahead_rad| ahead_rad.abs() >= self.limits.lead_rad)
+    }
+
     pub fn is_still(&self) -> bool {
         self.moved_rad == Joints::zeros()
     }

@@ -46,7 +46,9 @@ impl<F> DeviceProbe<F> {
         let other = |reason: &str| Err(DeviceError::Other { place: self.place.clone(), reason: reason.to_owned() });
         match health.standing {
             ConnectionState::Lost(Loss::Disconnected) => Err(DeviceError::Absent { place }),
-            ConnectionState::Lost(Loss::Silent) if health.out_of_order > 0 => Err(DeviceError::Late { place }),
+            ConnectionState::Lost(Loss::Silent) if health.out_of_order > health.readings => {
+                Err(DeviceError::Late { place })
+            }
             ConnectionState::Lost(Loss::Silent) => Err(DeviceError::Silent { place }),
             ConnectionState::Lost(loss @ (Loss::Corrupt | Loss::Implausible)) => other(loss.cause()),
             ConnectionState::Lost(Loss::Device { code }) => Err(DeviceError::DeviceFault {

@@ -33,7 +33,12 @@ mod watch;
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 pub use nima_core::{SIDES, Side};
-use nima_core::{calibration::frames::FrameSample, frames::WristSample, kinematics::HandPose, safety::RawReadings};
+use nima_core::{
+    calibration::frames::FrameSample,
+    frames::WristSample,
+    kinematics::{HandPose, Inverse},
+    safety::RawReadings,
+};
 use nima_devices::{ClearFaults, ConnectionState, Health, Lever, SlotView};
 
 use crate::messages::{Command, PeerStatus};
@@ -131,9 +136,16 @@ impl ViewOrientation {
 }
 
 /// Tip position that the arm was commanded, m, within the limits of joints and trocar, so it may be behind the command of
-/// the hand. `None` without a plan here: the arm is simulated, at rest, or at another machine.
+/// the hand. `None` if the arm has no joints here or is at rest, and if the plan waits for a blocked arm: then the hand's
+/// command is what the arm should follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlannedTip(pub Option<Vector3<f64>>);
+
+impl PlannedTip {
+    pub fn of(plan: Option<&Inverse>) -> Self {
+        Self(plan.filter(|plan| !plan.is_blocked()).map(|plan| plan.pose().tip_m))
+    }
+}
 
 /// The measurements of an arm pair at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -120,7 +120,8 @@ pub struct PlausibilityInput {
     pub tip_m: Vector3<f64>,
     /// Position of the handle, m (in its device's axes).
     pub hand_m: Vector3<f64>,
-    /// Commanded position of the tip one tick ago, m; `None` while the tip is at rest.
+    /// Tip position that the arm was commanded one tick ago, m: its plan if that is known, otherwise the command of the
+    /// hand. `None` while the tip is at rest.
     pub command_m: Option<Vector3<f64>>,
     /// Commanded force on the hand one tick ago, N.
     pub hand_force_n: Vector3<f64>,

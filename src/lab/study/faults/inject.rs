@@ -225,7 +225,7 @@ impl Faulty {
         to_rig[FAULTY] = self.for_rig(self.wanted[FAULTY]);
         self.applied = to_rig[FAULTY];
         let situation = self.situation;
-        let (mut inputs, seen) = self.rig.read(now_s, &to_rig);
+        let (mut inputs, seen) = self.rig.read(now_s, &to_rig, &self.wanted[FAULTY]);
         inputs[FAULTY] = inputs[FAULTY].and_then(|seen| situation.of(&seen));
         self.truth = inputs;
         let seen = seen.and_then(|seen| situation.of(&seen));

@@ -7,13 +7,16 @@
 use nalgebra::Vector3;
 use nima_core::{
     frames::WristSample,
+    kinematics::{Inverse, Joints},
     safety::{RawReading, RawReadings},
 };
 use nima_devices::TimedReading;
 use nima_emulation::emulated::{ArmReadings, ClockedSide, HandFrame};
 use nima_machine::{
     config::RigConfig,
-    rig::{DeliveringDevices, Inputs, Outputs, Rig as _, SIDES, SensedForce, SensorPlace, Side, SideReadings},
+    rig::{
+        DeliveringDevices, Inputs, Outputs, PlannedTip, Rig as _, SIDES, SensedForce, SensorPlace, Side, SideReadings,
+    },
 };
 use nima_simulation::{Worlds, scene::Scene};
 
@@ -38,6 +41,8 @@ pub(super) struct ArmRig {
     known: ArmReadings,
     joints_first: Option<[f64; 7]>,
     block: Vec<[f64; 7]>,
+    /// The plan of the rig, which knows nothing of a fault of the arm.
+    plan: Option<Inverse>,
 }
 
 /// A simulated rig or an arm pair.
@@ -69,6 +74,7 @@ impl FaultSubject {
             known: ArmReadings::default(),
             joints_first: None,
             block: Vec::new(),
+            plan: None,
         })))
     }
 
@@ -86,7 +92,13 @@ impl FaultSubject {
     }
 
     /// Passes outputs to the rig and reads it: returns the true inputs, and those of the failing side for alteration.
-    pub(super) fn read(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> ([Option<Inputs>; SIDES], Option<Inputs>) {
+    /// `wanted`: outputs of the loop for the failing side, from which the rig plans the motion of its joints.
+    pub(super) fn read(
+        &mut self,
+        now_s: f64,
+        outputs: &[Outputs; SIDES],
+        wanted: &Outputs,
+    ) -> ([Option<Inputs>; SIDES], Option<Inputs>) {
         match self {
             Self::Simulated(worlds) => {
                 worlds.write(now_s, outputs);
@@ -94,6 +106,7 @@ impl FaultSubject {
                 (truth, truth[FAULTY])
             }
             Self::Arm(arm) => {
+                arm.plan(wanted);
                 let seen = arm.read(now_s, &outputs[FAULTY]);
                 let mut truth = [None; SIDES];
                 truth[FAULTY] = arm.truth.inputs(now_s, DELIVERING);
@@ -138,6 +151,21 @@ fn raw_of(inputs: &Inputs) -> RawReadings {
 }
 
 impl ArmRig {
+    fn plan(&mut self, wanted: &Outputs) {
+        let joints = self.given.joints_rad().map(Joints::from);
+        let Some((joints, target_m)) = joints.zip(wanted.tip_command_m.filter(|_| wanted.drives)) else {
+            self.plan = None;
+            return;
+        };
+        if self.plan.is_none() {
+            self.plan = self.given.begin(&joints).ok();
+        }
+        if let Some(plan) = &mut self.plan {
+            plan.observe(&joints);
+            plan.step(&target_m);
+        }
+    }
+
     /// Reads the devices; returns force and handle as inputs, in the frames of their devices.
     fn read(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
         self.devices.write(outputs, &self.given);
@@ -178,7 +206,8 @@ impl ArmRig {
         }
         report.arm = report.arm.filter(|_| fault != Some(FaultKind::TipNan));
         take(&mut self.given, &report, self.truth.force_is_on);
-        self.given.inputs(now_s, DELIVERING)
+        let planned = PlannedTip::of(self.plan.as_ref());
+        self.given.inputs(now_s, DELIVERING).map(|inputs| Inputs { planned, ..inputs })
     }
 
     fn joints(&mut self, fault: Option<FaultKind>, age: u32, mut joint_rad: [f64; 7]) -> [f64; 7] {

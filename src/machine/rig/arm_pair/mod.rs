@@ -164,7 +164,7 @@ impl ArmPair {
         let follower = self.follower.as_ref().map(|slots| is_there(&slots.arm) && is_there(&slots.sensor));
         let delivering = DeliveringDevices { handle: self.handle.as_ref().map(is_there), follower };
         let jaws = self.servos.as_ref().map(|(slot, control)| (control, is_there(slot)));
-        let planned = PlannedTip(self.inverse.as_ref().map(|inverse| inverse.pose().tip_m));
+        let planned = PlannedTip::of(self.inverse.as_ref());
         self.measured.with(now_s, delivering, jaws, shared).map(|inputs| Inputs { planned, ..inputs })
     }
 

@@ -19,8 +19,8 @@ pub const LATE_CURE: Text = Text::of(
     "Langsam bewegen. Kamera an einen eigenen Anschluss legen oder ein kleineres Bild einstellen.",
 );
 pub const DAMAGED_CURE: Text = Text::of(
-    "The last complete image is shown. Check the camera cable.",
-    "Gezeigt wird das letzte ganze Bild. Kabel zur Kamera prüfen.",
+    "An earlier image may be shown. Check the camera's image format and cable.",
+    "Gezeigt wird evtl. ein früheres Bild. Bildformat und Kabel der Kamera prüfen.",
 );
 pub const SIZE_CURE: Text = Text::of(
     "Set the camera to the image size in the rig file. Until then no forces are drawn.",

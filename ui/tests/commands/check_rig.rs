@@ -6,7 +6,7 @@ use std::{
 };
 
 use nima_recording::store::{PointOutcome, ReadyRecord, Store};
-use nima_testing::real_time::{alone, judged, too_busy};
+use nima_testing::real_time::{alone, judged};
 use nima_tests::gravity::gravity;
 
 fn nima(data: &Path, arguments: &[&str]) -> Output {
@@ -44,9 +44,6 @@ fn a_simulated_rig_in_order_passes_and_its_record_says_what_was_measured() {
         let (output, record) = checked(folder.path(), 0.0);
         let report = String::from_utf8_lossy(&output.stdout).into_owned();
         println!("{report}{}", String::from_utf8_lossy(&output.stderr));
-        if of(&record, "Watchdog of the loop").outcome == PointOutcome::Failed {
-            too_busy();
-        }
         assert!(output.status.success() && record.passed);
         assert!(report.contains("Right arm: direction of the force: passed") && report.contains("skipped"));
         assert_eq!((record.by.as_str(), record.rig_file.as_str()), ("Ada Lovelace", "simulated"));

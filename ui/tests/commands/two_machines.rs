@@ -9,7 +9,7 @@ use std::{
     time::Duration,
 };
 
-use nima_testing::real_time::{alone, judged, too_busy};
+use nima_testing::real_time::{alone, judged};
 use serde_json::Value;
 
 /// Returns an address of this machine that is free.
@@ -105,15 +105,10 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
         let there = there.wait_with_output().unwrap();
         let json: Value = serde_json::from_slice(&here.stdout).unwrap_or_default();
         println!("{json:#}\n{}\n{}", report(&here), report(&there));
-        // A machine that stalled for 0.1 s stops both.
-        if json["final_state"] != "engaged" || json["link"]["open"] != true {
-            too_busy();
-        }
+        assert!(json["final_state"] == "engaged" && json["link"]["open"] == true, "{json:#}");
         let count = |name: &str| json["link"][name].as_f64().unwrap();
         assert!(count("delivered") > 4000.0);
-        if count("lost") > 0.002 * count("delivered") {
-            too_busy();
-        }
+        assert!(count("lost") <= 0.002 * count("delivered"), "{json:#}");
         assert_eq!(json["link"]["dropped"], 0);
         // The other machine lost the connection: it stopped, and reports the cause.
         assert!(!there.status.success());

@@ -15,7 +15,7 @@ use nima_simulation::SimulationPlan;
 const STEP_MAX_M: f64 = 5e-6;
 const RUN_S: f64 = 6.0;
 
-/// What is wrong with the arms.
+/// Faults of the arms.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Flaw {
     /// The plan moves slowly, and is reported as real arms do.

@@ -4,6 +4,7 @@
 
 use super::{
     Mode, SLOTS,
+    change::LastingError,
     holding::{HeldMixture, Holding},
     messages::{IdentificationReport, LinkPacket},
     method::{LeaderEnd, LeaderInput, RenderingMethod},
@@ -129,27 +130,6 @@ impl MixtureTrial {
         let odds = odds(self.mixed_n, self.anchored_n);
         // Squaring the odds doubles the exponent, so that the mixture is rarely worse by more than a few per cent.
         (odds * odds).map(|odds| 1.0 / (1.0 + odds.recip()))
-    }
-}
-
-/// The smallest error (N) of the current block of ticks and of the previous one.
-#[derive(Clone, Copy, Debug, Default)]
-struct LastingError {
-    ticks: usize,
-    min_n: [Lanes; 2],
-}
-
-impl LastingError {
-    fn step(&mut self, block: usize, error_n: Lanes) -> Lanes {
-        if self.ticks.is_multiple_of(block) {
-            let [newest_n, _] = self.min_n;
-            // Before there is a block to compare with, no error can have lasted.
-            self.min_n = [error_n, if self.ticks > 0 { newest_n } else { Lanes::ZERO }];
-        }
-        self.ticks += 1;
-        let [newest_n, before_n] = &mut self.min_n;
-        *newest_n = newest_n.zip(error_n, f64::min);
-        newest_n.zip(*before_n, f64::min)
     }
 }
 

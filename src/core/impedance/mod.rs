@@ -27,6 +27,7 @@
 mod anchored;
 mod baseline;
 mod best;
+mod change;
 mod damper;
 mod degrees;
 mod dfr;

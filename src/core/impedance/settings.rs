@@ -127,8 +127,8 @@ pub struct ImpedanceSettings {
     pub ridge: f64,
     /// Interpretation of the paper in the modes literal and linear.
     pub literal: Recipe,
-    /// Computes the forces as sessions with a journal of version 5 did: `best` without holding, single wrong positions
-    /// used, and the motion held during a gap. For their replay only.
+    /// Computes the forces as sessions with a journal of version 5 did: `best` without holding, no restart of the fit on
+    /// other tissue, single wrong positions used, and the motion held during a gap. For their replay only.
     pub earlier_forces: bool,
 }
 

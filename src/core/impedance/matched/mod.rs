@@ -37,6 +37,7 @@ use self::{
 };
 use super::{
     Mode,
+    change::ChangeDetector,
     envelope::Envelope,
     messages::{IdentificationReport, LinkPacket, Posture},
     method::{FollowerEnd, MethodInput},
@@ -84,6 +85,8 @@ struct Learner {
     /// Number of evaluated ticks, by the clock.
     judged: f64,
     model: MatchedModel,
+    /// `None` for the paper's form, and in the replay of a session that was recorded without it.
+    change: Option<ChangeDetector>,
 }
 
 #[derive(Debug)]
@@ -155,6 +158,8 @@ impl Learner {
             slip: FollowerSlip::default(),
             judged: 0.0,
             model: MatchedModel::NONE,
+            change: (!settings.earlier_forces && !matches!(form, ModelForm::Paper(_)))
+                .then(|| ChangeDetector::new(rate_hz)),
         };
         matched.reset();
         matched
@@ -299,7 +304,12 @@ impl Learner {
         // Only the ratio of the errors counts, so that the weights are the same in every unit.
         let scale = sum.recip_or_zero();
         self.experts.iter_mut().for_each(|expert| expert.weight *= scale);
-        self.drift.judge(self.horizon(), force_n - sent.clipped(*said_n), sent.offset_n);
+        let error_n = force_n - sent.clipped(*said_n);
+        self.drift.judge(self.horizon(), error_n, sent.offset_n);
+        if self.change.as_mut().is_some_and(|change| change.step(force_n, error_n.map(f64::abs), pace, horizon)) {
+            // The samples of the previous tissue would spoil the fit for as long as the memory lasts.
+            self.sums.iter_mut().for_each(MatchedSums::reset);
+        }
     }
 
     /// Mixes the experts by their weights and adds the other data that the leader needs.
@@ -376,6 +386,7 @@ impl FollowerEnd for Learner {
         self.origin = None;
         self.judged = 0.0;
         self.slip = FollowerSlip::default();
+        self.change = self.change.map(|_| ChangeDetector::new(self.rate_hz));
         self.model = MatchedModel::NONE;
     }
 }

@@ -282,3 +282,29 @@ fn friction_is_known_from_the_force_along_the_other_axes() {
     let [blind_n, sliding_n] = [ModelForm::Tissue, ModelForm::Sliding].map(error_n);
     assert!(sliding_n < 0.4 * blind_n, "{sliding_n} N with slip columns, {blind_n} N without");
 }
+
+/// Returns the mean error (N) from 1 s to 3 s after the stiffness of the tissue grew to ten times its value.
+fn error_on_stiffer_tissue_n(settings: &ImpedanceSettings, soft_s: f64) -> f64 {
+    let mut pair = Pair::new(ModelForm::Tissue, settings);
+    let mut sum_n = 0.0;
+    for k in 0..=((soft_s + 3.0) * settings.rate_hz) as u32 {
+        let t_s = f64::from(k) / settings.rate_hz;
+        let at_m = hand_m(t_s);
+        let stiffness_n_m = if t_s < soft_s { 100.0 } else { 1000.0 };
+        let force_n = Vector3::new(0.0, 0.0, -stiffness_n_m * at_m.z.min(0.0));
+        let said_n = pair.step(at_m, force_n).unwrap_or_default();
+        sum_n += if t_s > soft_s + 1.0 { (said_n - force_n).norm() } else { 0.0 };
+    }
+    sum_n / (2.0 * settings.rate_hz)
+}
+
+#[test]
+fn another_tissue_is_learnt_as_fast_as_the_first_one() {
+    let settings = settings(0.05);
+    let cold_n = error_on_stiffer_tissue_n(&settings, 0.0);
+    let changed_n = error_on_stiffer_tissue_n(&settings, 6.0);
+    let before_n = error_on_stiffer_tissue_n(&ImpedanceSettings { earlier_forces: true, ..settings.clone() }, 6.0);
+    println!("cold {cold_n} N, after a change {changed_n} N, without detecting it {before_n} N");
+    assert!(changed_n < 1.3 * cold_n, "{changed_n} N, {cold_n} N without the soft tissue before");
+    assert!(before_n > 1.5 * changed_n, "{before_n} N without detecting the change");
+}

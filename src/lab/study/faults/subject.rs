@@ -92,7 +92,7 @@ impl FaultSubject {
     }
 
     /// Passes outputs to the rig and reads it: returns the true inputs, and those of the failing side for alteration.
-    /// `wanted`: outputs of the loop for the failing side, from which the rig plans the motion of its joints.
+    /// `wanted`: outputs of the loop for the failing side; the rig plans the motion of its joints by them.
     pub(super) fn read(
         &mut self,
         now_s: f64,

@@ -105,7 +105,11 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
 /// Starts the next trial of P01 and ends it by a signal after its start; `false` if it was over before.
 fn ended_by(signal: i32, study: &Path) -> bool {
     let journal = study.join("journal.jsonl");
-    let began = |journal: &PathBuf| fs::read_to_string(journal).unwrap().matches("trial_began").count();
+    // An unfinished line does not count.
+    let began = |journal: &PathBuf| {
+        let text = fs::read_to_string(journal).unwrap();
+        text.rsplit_once('\n').map_or(0, |(lines, _)| lines.matches("trial_began").count())
+    };
     let before = began(&journal);
     let mut child = Command::new(env!("CARGO_BIN_EXE_nima"))
         .args(["user-study", "next", study.to_str().unwrap(), "--participant", "P01", "--virtual"])

@@ -93,14 +93,11 @@ impl LeaderHalf {
         }
         // Without an earlier command the path starts at the tip, which cannot jump.
         let from_m = self.command_m.unwrap_or(seen.tip_m);
-        let path_m = target.tip_m - from_m;
-        let length_m = path_m.norm();
-        // Shortened along the path, not per axis, so that the tip keeps the direction of the hand.
-        let fraction = if length_m > self.step_max_m { self.step_max_m / length_m } else { 1.0 };
-        let led_m = from_m + path_m * fraction;
-        let planned_m = seen.planned.0.unwrap_or(led_m);
-        let ahead_m = led_m - planned_m;
-        self.command_m = Some(planned_m + ahead_m * (AHEAD_MAX_M / ahead_m.norm().max(AHEAD_MAX_M)));
+        let wanted_m = match seen.planned.0 {
+            Some(planned_m) => planned_m + shortened(target.tip_m - planned_m, AHEAD_MAX_M),
+            None => target.tip_m,
+        };
+        self.command_m = Some(from_m + shortened(wanted_m - from_m, self.step_max_m));
         TipLead { target, tip_m: self.command_m }
     }
 
@@ -174,6 +171,11 @@ impl LeaderHalf {
         self.command_m = None;
         self.hand_eye.release();
     }
+}
+
+/// Returns a path of at most this length, m. It keeps its direction, so that the tip moves like the hand.
+fn shortened(path_m: Vector3<f64>, max_m: f64) -> Vector3<f64> {
+    path_m * (max_m / path_m.norm().max(max_m))
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -368,6 +368,8 @@ impl FollowerEnd for Learner {
 
     fn set_delay(&mut self, delay_ticks: usize) {
         self.delay_ticks = delay_ticks;
+        // The usual error depends on the delay.
+        self.change = self.change.map(|_| ChangeDetector::new(self.rate_hz));
     }
 
     fn reset(&mut self) {

@@ -80,9 +80,13 @@ impl MatchedSums {
         self.factor.renew(&mut self.gram[..elements], &mut self.right[..columns], &ridge);
     }
 
-    /// Returns the parameters of the leading columns by the newest factorisation, zero beyond; `None` if one is not
-    /// finite.
+    /// Returns the parameters of the leading columns by the newest factorisation, zero beyond; `None` without
+    /// samples, or if one is not finite.
     pub(super) fn parameters(&self, columns: usize) -> Option<FormRow> {
+        // Zeros without samples would be rendered as no force.
+        if self.seen <= 0.0 {
+            return None;
+        }
         let mut found = [Lanes::ZERO; COLUMNS];
         self.factor.solve(&mut found[..columns]);
         found.iter().all(|p| p.is_finite()).then_some(found)

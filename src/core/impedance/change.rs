@@ -1,6 +1,9 @@
 //! Detects a change of tissue: an error that lasts, and that is many times the usual one.
 
-use super::motion_clock::newest_fraction;
+use super::{
+    holding::{ForceRenewal, STALE_S},
+    motion_clock::newest_fraction,
+};
 use crate::signal::Lanes;
 
 /// Length of a lasting error (s), if the delay is not longer: at least half of it. The error of a first contact ends sooner,
@@ -9,8 +12,6 @@ use crate::signal::Lanes;
 const LASTING_S: f64 = 0.2;
 /// A lasting error this many times the usual one is a change. With 8 and 0.15 s, `best` errs 2 to 19 % more after a change.
 const FACTOR: f64 = 6.0;
-/// A force that stays the same for longer than this (s) comes from a sensor that renews its value slowly.
-const STALE_S: f64 = 0.02;
 /// Memory of the usual error (s by the motion clock): some touches.
 const USUAL_S: f64 = 4.0;
 /// Minimum time between two changes (s), in which a model learns a tissue.
@@ -46,9 +47,7 @@ pub(super) struct ChangeDetector {
     lasting: LastingError,
     /// Ticks since the last change.
     since: usize,
-    force_n: Lanes,
-    /// Ticks for which the force has been the same.
-    same: usize,
+    renewal: ForceRenewal,
 }
 
 impl ChangeDetector {
@@ -59,11 +58,9 @@ impl ChangeDetector {
     /// Adds a measured force and the size of the error of its prediction `age` ticks earlier (N), at this pace of the
     /// motion clock; returns whether the error reveals another tissue.
     pub(super) fn step(&mut self, force_n: Lanes, error_n: Lanes, pace: f64, age: usize) -> bool {
-        // A sensor that renews its value slowly makes every model err until the next one.
-        let is_same = force_n == self.force_n && force_n != Lanes::ZERO;
-        self.same = if is_same { self.same + 1 } else { 0 };
-        self.force_n = force_n;
-        if self.same as f64 > STALE_S * self.rate_hz {
+        // A sensor that renews its value slowly makes every model err until the next one. Exactly zero is a simulated tip
+        // that touches nothing: after its errors of zero, any error would look large.
+        if self.renewal.step(force_n, true) as f64 > STALE_S * self.rate_hz || force_n == Lanes::ZERO {
             return false;
         }
         let lasting = (LASTING_S * self.rate_hz) as usize;
@@ -91,7 +88,11 @@ mod tests {
     /// Returns whether errors of this size (N) reveal a change, after five seconds of errors of 0.1 N.
     fn is_change(age: usize, errors_n: impl Iterator<Item = f64>) -> bool {
         let mut detector = ChangeDetector::new(1000.0);
-        let mut step = |error_n: f64| detector.step(Lanes::ZERO, Lanes::splat(error_n), 1.0, age);
+        let mut force_n = 0.0;
+        let mut step = |error_n: f64| {
+            force_n += 1.0;
+            detector.step(Lanes::splat(force_n), Lanes::splat(error_n), 1.0, age)
+        };
         assert!(!(0..5000).any(|_| step(0.1)));
         errors_n.into_iter().any(step)
     }
@@ -108,10 +109,14 @@ mod tests {
     #[test]
     fn nothing_is_a_change_at_the_start_or_while_the_sensor_repeats_itself() {
         let mut detector = ChangeDetector::new(1000.0);
-        assert!(!(0..400).any(|k| detector.step(Lanes::ZERO, Lanes::splat(f64::from(k)), 1.0, 50)));
-        let mut detector = ChangeDetector::new(1000.0);
+        let renewed = |k: u32| Lanes::splat(f64::from(1 + k));
+        assert!(!(0..400).any(|k| detector.step(renewed(k), renewed(k), 1.0, 50)));
         let stale = |k: u32| Lanes::splat(f64::from(1 + k / 250));
         let error_n = |k: u32| Lanes::splat(if k < 5000 { 0.1 } else { 1.0 });
-        assert!(!(0..7000).any(|k| detector.step(stale(k), error_n(k), 1.0, 50)));
+        let is_change = |force_n: &dyn Fn(u32) -> Lanes| {
+            let mut detector = ChangeDetector::new(1000.0);
+            (0..7000).any(|k| detector.step(force_n(k), error_n(k), 1.0, 50))
+        };
+        assert!(is_change(&renewed) && !is_change(&stale) && !is_change(&|_| Lanes::ZERO));
     }
 }

@@ -13,7 +13,7 @@ const EVIDENCE_S: f64 = 2.5;
 const CHANCE: f64 = 0.1;
 /// A force that stays the same to the last bit for this long (s), and for longer than the delay, while the hand moves comes
 /// from a sensor that renews its value more slowly. Until the next value, the last one is the best prediction.
-const STALE_S: f64 = 0.02;
+pub(super) const STALE_S: f64 = 0.02;
 /// Pace of the motion clock above which the hand moves.
 const MOVES: f64 = 0.5;
 
@@ -99,7 +99,7 @@ impl Holding {
 
 /// Ticks for which the force stays the same while the hand moves.
 #[derive(Clone, Copy, Debug, Default)]
-struct ForceRenewal {
+pub(super) struct ForceRenewal {
     force_n: Lanes,
     same: usize,
     before: usize,
@@ -107,7 +107,7 @@ struct ForceRenewal {
 
 impl ForceRenewal {
     /// Returns the longer of the current and the last period without a new value.
-    fn step(&mut self, force_n: Lanes, moves: bool) -> usize {
+    pub(super) fn step(&mut self, force_n: Lanes, moves: bool) -> usize {
         // Exactly zero: the tip touches nothing.
         if force_n == self.force_n && force_n != Lanes::ZERO {
             self.same += usize::from(moves);

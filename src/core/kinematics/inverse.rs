@@ -45,6 +45,9 @@ const TARGET_MOTION_S: f64 = 0.005;
 /// Larger values move the elbow visibly while the tip rests; smaller ones leave a posture near a limit for longer.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_FRACTION: f64 = 0.2;
+/// A blocked arm is free again when every joint is within this fraction of the permitted lead. Without this margin, the
+/// noise of the encoders would free it for single ticks.
+const FREE_FRACTION: f64 = 0.8;
 /// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
 /// A larger miss is a wrong trocar or a wrong calibration, which the correction must not pull straight.
 pub const START_MISS_M: f64 = 5e-3;
@@ -113,6 +116,7 @@ pub struct Inverse {
     moved_rad: Joints,
     /// Difference between command and measured angle, rad.
     ahead_rad: Joints,
+    blocked: bool,
     /// Last target, and its motion per period: rotation times [`LENGTH_M`] and sliding inwards, m.
     last_goal: Option<RcmShaft>,
     target_motion_m: Vector3<f64>,
@@ -154,6 +158,7 @@ impl Inverse {
             dexterity: 0.0,
             moved_rad: Joints::zeros(),
             ahead_rad: Joints::zeros(),
+            blocked: false,
             last_goal: None,
             target_motion_m: Vector3::zeros(),
         };
@@ -170,12 +175,14 @@ impl Inverse {
     /// farther away.
     pub fn observe(&mut self, measured_rad: &Joints) {
         self.ahead_rad = self.joint_rad - measured_rad;
+        let limit_rad = self.limits.lead_rad * if self.blocked { FREE_FRACTION } else { 1.0 };
+        self.blocked = self.ahead_rad.iter().any(|ahead_rad| ahead_rad.abs() >= limit_rad);
     }
 
     /// Returns whether a joint is so far from its command that the plan waits for it: the arm is blocked, or slower than
     /// its limits say.
-    pub fn is_blocked(&self) -> bool {
-        self.ahead_rad.iter().any(|ahead_rad| ahead_rad.abs() >= self.limits.lead_rad)
+    pub const fn is_blocked(&self) -> bool {
+        self.blocked
     }
 
     pub fn is_still(&self) -> bool {

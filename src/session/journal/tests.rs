@@ -27,7 +27,7 @@ use super::{
     VERSION, decode,
 };
 use crate::{
-    codec::{BlockColumns, ToWords as _, number as number_to},
+    codec::{BlockColumns, ToWords as _},
     digest::{DigestCheck, STAGES},
 };
 
@@ -399,10 +399,8 @@ fn a_block_of_the_version_before_is_read_without_the_commanded_tips() {
         columns.next_row();
         row.put(&mut columns);
     }
-    let mut bytes = Vec::new();
-    for count in [9, rows.len() as u64, 0] {
-        number_to(&mut bytes, count);
-    }
+    // The first tick, and the numbers of rows and entries.
+    let mut bytes = vec![9, 2, 0];
     columns.pack(&mut bytes);
     let mut message = JournalEncoder::default().message(BLOCK, &bytes);
     message[4] = 5;

@@ -233,3 +233,20 @@ fn a_place_without_a_pose_is_explained() {
     let inside_the_foot = at(Vector3::new(0.05, 0.0, -0.3), down);
     assert!(matches!(inside_the_foot, ReadyError::NoPose { .. } | ReadyError::Unusable { .. }), "{inside_the_foot}");
 }
+
+#[test]
+fn an_arm_that_does_not_move_stays_blocked_although_its_encoders_are_noisy() {
+    let mut random = fastrand::Rng::with_seed(3);
+    let mut inverse = started(45.0).within(JointLimits::of_arm(&ArmModel::GEN3, 0.5, 0.05));
+    let held_rad = *inverse.joint_rad();
+    let mut blocked = Vec::new();
+    for k in 0..3000 {
+        inverse.observe(&held_rad.map(|rad| rad + 1e-3 * (random.f64() - 0.5)));
+        inverse.step(&(middle_m() + Vector3::x() * 0.05 * (f64::from(k) * 1e-3).min(1.0)));
+        blocked.push(inverse.is_blocked());
+    }
+    let since = blocked.iter().position(|blocked| *blocked).unwrap();
+    assert!(blocked[since..].iter().all(|blocked| *blocked), "blocked from tick {since} on");
+    inverse.observe(&inverse.joint_rad().clone());
+    assert!(!inverse.is_blocked(), "it has followed");
+}

@@ -1,7 +1,8 @@
 //! A button whose condition may flicker, for example while a device is lost for a moment.
 //!
 //! A click is never swallowed: it acts, or the button says why not. A short gap in the condition does not disable the button,
-//! and its label does not change while the pointer is down on it.
+//! and its label does not change while the pointer is down on it. Only a click in the first frame of a button does nothing: nobody
+//! has seen the button yet, and the click was meant for what was drawn in its place before.
 
 use std::time::Duration;
 
@@ -28,6 +29,8 @@ struct SteadyState {
     has_changed: bool,
     /// The reason why the last click did not act.
     why: String,
+    /// The last pass of the window in which the button was drawn.
+    drawn_pass: u64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +68,9 @@ impl SteadyButton<'_> {
         let response = ui.add_enabled(enabled, look(shown.clone(), enabled));
         let pressed_in_vain =
             !enabled && response.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
-        let clicked = response.clicked() || pressed_in_vain;
+        let pass = ui.ctx().cumulative_pass_nr();
+        let was_seen = std::mem::replace(&mut state.drawn_pass, pass) + 1 == pass;
+        let clicked = was_seen && (response.clicked() || pressed_in_vain);
         if clicked {
             state.clicked_s = Some(now_s);
             state.has_changed = shown != label;
@@ -112,17 +117,19 @@ mod tests {
         may: Result<(), &'static str>,
         label: &'static str,
         waits_s: f64,
+        /// The step of the wizard; every step has its own button in the same place.
+        step: usize,
         acted: usize,
     }
 
     fn window(waits_s: f64) -> Harness<'static, Shown> {
-        let shown = Shown { may: Ok(()), label: "Next", waits_s, acted: 0 };
+        let shown = Shown { may: Ok(()), label: "Next", waits_s, step: 0, acted: 0 };
         let draw = |ui: &mut Ui, shown: &mut Shown| {
             if !theme::is_applied(ui.ctx()) {
                 return;
             }
-            let Shown { may, label, waits_s, .. } = *shown;
-            let button = SteadyButton { id: Id::unique("next"), label, meaning: "", may, waits_s };
+            let Shown { may, label, waits_s, step, .. } = *shown;
+            let button = SteadyButton { id: Id::unique(("next", step)), label, meaning: "", may, waits_s };
             shown.acted += usize::from(button.ui(ui, |label, _| Button::new(label)));
         };
         let mut window =
@@ -150,6 +157,19 @@ mod tests {
         window.run_steps(4);
         window.state_mut().may = Ok(());
         window.run_steps(20);
+        assert_eq!(window.state().acted, 1);
+    }
+
+    #[test]
+    fn a_second_click_does_not_act_on_the_next_step_before_it_was_seen() {
+        let mut window = window(PATIENT_S);
+        window.get_by_label("Next").click_accesskit();
+        // The first click was acted upon after the last frame, and the second one is already on its way.
+        window.state_mut().step = 1;
+        window.step();
+        assert_eq!(window.state().acted, 0, "the click was meant for the step before");
+        window.get_by_label("Next").click_accesskit();
+        window.step();
         assert_eq!(window.state().acted, 1);
     }
 

@@ -24,6 +24,7 @@ mod native {
     };
 
     #[pymodule_init]
+    #[expect(clippy::unnecessary_wraps, reason = "the form that `PyO3` requires")]
     fn init(_module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         nima_baselines::provide();
         Ok(())

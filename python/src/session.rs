@@ -62,7 +62,7 @@ impl TickColumns {
         for (column, vector) in self.vectors.iter_mut().zip(vectors) {
             column.extend(Vector3::iter(vector).copied());
         }
-        self.states.push(tick.state);
+        self.states.push(tick.state.word());
     }
 }
 

@@ -177,11 +177,11 @@ FEW = np.linspace(0.0, 1.0, 500)
         ({"rate_hz": 1000.0, "delay_s": 5.0}, "the delay of 5 s is out of range: use 0 to 1 s"),
         ({"rate_hz": 1000.0, "delay_s": float("nan")}, "the delay of NaN s is out of range"),
         ({"rate_hz": 1000.0, "delay_s": 1e-4}, "less than half a sample"),
-        ({"rate_hz": 5.0}, "the sampling rate of 5 Hz is out of range"),
-        ({"rate_hz": 1000.0, "window_s": 0.0}, "the window of 0 s"),
+        ({"rate_hz": 1.0}, "the sampling rate of 1 Hz is out of range"),
+        ({"rate_hz": 1000.0, "window_s": 0.0, "mode": "literal"}, "the window of 0 s"),
         ({"rate_hz": 1000.0, "window_s": 0.6}, "has 500 samples; a window of 600 ms"),
         ({"rate_hz": 1000.0, "max_degree": 9}, "the highest degree 9 is out of range"),
-        ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge -1 is out of range"),
+        ({"rate_hz": 1000.0, "ridge": -1.0}, "the ridge parameter -1 is out of range"),
         ({"rate_hz": 1000.0, "reading": "sideways"}, "reading: unknown variant `sideways`"),
         ({"rate_hz": 1000.0, "choice": "best"}, "choice: unknown variant `best`"),
         ({"times_s": np.zeros(500)}, "times_s, row 1: time does not increase (0 s, then 0 s)"),
@@ -199,7 +199,7 @@ FEW = np.linspace(0.0, 1.0, 500)
         ({"positions_m": pandas.DataFrame({"x_m": FEW}), "forces_n": None}, 'the frame has no column "t_s"; its columns are x_m'),
         ({"positions_m": pandas.DataFrame({"t_s": FEW, "x_m": FEW}), "forces_n": None}, 'no column "fx_n"'),
         ({"positions_m": pandas.DataFrame({"t_s": FEW}), "forces_n": None, "map": ["w=a"]}, 'no quantity "w"'),
-        ({"positions_m": pandas.DataFrame({"t_s": FEW}), "forces_n": None, "map": ["xyz=a,b"]}, "takes three columns"),
+        ({"positions_m": pandas.DataFrame({"t_s": FEW}), "forces_n": None, "map": ["xyz=a,b"]}, "takes 3 columns, not 2"),
     ],
 )
 def test_what_cannot_be_used_is_one_clear_line(arguments, words):

@@ -29,8 +29,9 @@ def test_ticks_are_the_table_that_the_program_exports(program, session, tmp_path
     of_table = {"tip_m": "{}_m", "measured_n": "f{}_n", "leader_m": "leader_{}_m", "delayed_n": "delayed_{}_n",
                 "asked_n": "asked_{}_n", "rendered_n": "rendered_{}_n"}
     for name, column in of_table.items():
-        values = np.array([[float(row[column.format(axis)]) for axis in "xyz"] for row in rows])
-        assert np.array_equal(getattr(ticks, name), values), name
+        # An unknown value is an empty cell.
+        values = np.array([[float(row[column.format(axis)] or "nan") for axis in "xyz"] for row in rows])
+        assert np.array_equal(getattr(ticks, name), values, equal_nan=True), name
     assert np.array_equal(ticks.t_s, [float(row["t_s"]) for row in rows])
     assert np.array_equal(ticks.time_ns, np.array([int(row["time_ns"]) for row in rows], dtype=np.uint64))
     assert ticks.state == [row["state"] for row in rows]

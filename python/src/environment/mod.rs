@@ -4,6 +4,8 @@ mod handle;
 mod link;
 mod running;
 
+use std::sync::{Mutex, PoisonError};
+
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -51,7 +53,8 @@ pub(crate) struct Simulation {
     control: EnvironmentControl,
     substeps: u32,
     has_jaws: bool,
-    running: Option<SimulationRun>,
+    /// The lock is only for `PyO3`, which shares objects between threads: the queues of a run cannot be shared.
+    running: Mutex<Option<SimulationRun>>,
 }
 
 /// Maximum number of ticks of a step.
@@ -102,7 +105,7 @@ impl Simulation {
                 plan.scene.name
             )));
         }
-        Ok(Self { plan, control, substeps, has_jaws, running: None })
+        Ok(Self { plan, control, substeps, has_jaws, running: Mutex::default() })
     }
 
     /// Returns the number of ticks per second.
@@ -152,7 +155,7 @@ impl Simulation {
             Ok((running, known))
         };
         let (running, known) = guarded(|| py.detach(begin))?;
-        self.running = Some(running);
+        *self.running() = Some(running);
         Ok((observation(py, &known)?, info(py, &known)?))
     }
 
@@ -164,7 +167,7 @@ impl Simulation {
     ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, bool)> {
         let (action, grip_rad) = self.action(&action)?;
         let substeps = self.substeps;
-        let running = self.running.as_mut().ok_or_else(|| value("call reset before step"))?;
+        let running = self.running().as_mut().ok_or_else(|| value("call reset before step"))?;
         let known = guarded(|| Ok(py.detach(|| running.step(action, grip_rad, substeps))))?;
         let known = known.ok_or_else(|| value("the scene has no right arm"))?;
         Ok((observation(py, &known)?, info(py, &known)?, known.tick.state == LoopState::Engaged))
@@ -172,12 +175,16 @@ impl Simulation {
 
     /// Returns the score as JSON; `None` in a scene without a task, or after the first call.
     fn score(&mut self) -> PyResult<Option<String>> {
-        let score = self.running.as_mut().and_then(SimulationRun::end);
+        let score = self.running().as_mut().and_then(SimulationRun::end);
         score.map(|score| serde_json::to_string(&score).map_err(value)).transpose()
     }
 }
 
 impl Simulation {
+    fn running(&mut self) -> &mut Option<SimulationRun> {
+        self.running.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn action(&self, numbers: &[f64]) -> PyResult<(ControllerAction, Option<f64>)> {
         let grips = self.has_jaws
             && matches!(self.control, EnvironmentControl::HandlePosition | EnvironmentControl::HandleForce);

@@ -66,7 +66,9 @@ fn own_address(text: &str) -> Result<Ipv4Addr, String> {
 /// Explains a lost connection, with the remedy.
 fn words(error: &io::Error) -> String {
     match error.kind() {
-        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => "no data for 5 s; check that this is the console's address".to_owned(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
+            "no data for 5 s; check that this is the console's address".to_owned()
+        }
         io::ErrorKind::UnexpectedEof => "the run has ended; waiting for the next run".to_owned(),
         io::ErrorKind::InvalidData => format!("{error}; use the address of `--igtl`"),
         _ => format!("{error}; start `nima run --igtl` or `nima console --igtl`"),

@@ -75,22 +75,22 @@ impl Publisher {
 fn of_topic(node: &mut Node, name: &Name, topic: Ros2Topic) -> Result<OfTopic, String> {
     Ok(match topic {
         Ros2Topic::MeasuredCp | Ros2Topic::SetpointCp => {
-            OfTopic::Pose(writer(node, name, ["geometry_msgs", "PoseStamped"], usual())?)
+            OfTopic::Pose(writer(node, name, ["geometry_msgs", "PoseStamped"], &usual())?)
         }
         Ros2Topic::MeasuredCf | Ros2Topic::RenderedCf => {
-            OfTopic::Wrench(writer(node, name, ["geometry_msgs", "WrenchStamped"], usual())?)
+            OfTopic::Wrench(writer(node, name, ["geometry_msgs", "WrenchStamped"], &usual())?)
         }
         // A subscriber that joins late receives the state at once.
         Ros2Topic::OperatingState => {
             let qos = usual().durability(Durability::TransientLocal);
-            OfTopic::State(writer(node, name, ["crtk_msgs", "OperatingState"], qos)?)
+            OfTopic::State(writer(node, name, ["crtk_msgs", "OperatingState"], &qos)?)
         }
     })
 }
 
-fn writer<D: Serialize>(node: &mut Node, name: &Name, kind: [&str; 2], qos: QosProfile) -> Result<Writer<D>, String> {
+fn writer<D: Serialize>(node: &mut Node, name: &Name, kind: [&str; 2], qos: &QosProfile) -> Result<Writer<D>, String> {
     let [package, kind] = kind;
-    let topic = node.create_topic(name, MessageTypeName::new(package, kind), &qos);
+    let topic = node.create_topic(name, MessageTypeName::new(package, kind), qos);
     let topic = topic.map_err(|error| error.to_string())?;
     node.create_publisher(&topic, None).map_err(|error| error.to_string())
 }

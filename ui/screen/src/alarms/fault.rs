@@ -31,12 +31,8 @@ pub(super) fn fault_alarm(t_s: f64, fault: Fault, signs: &Signs) -> Alarm {
 
 /// Returns the cause of a fault, with the name of the device or arm concerned.
 fn cause_of(fault: Fault, signs: &Signs) -> String {
-    let lost = match fault {
-        Fault::DeviceLost { device, .. } => signs.missing.iter().find(|missing| missing.place == usize::from(device)),
-        _ => None,
-    };
-    match lost {
-        Some(missing) => text::alarms::fault_of(&missing.name, fault.cause()),
+    match &signs.fault_device {
+        Some(name) => text::alarms::fault_of(name, fault.cause()),
         None => of_arm(fault.cause(), signs.fault_side),
     }
 }

@@ -150,6 +150,8 @@ pub struct Signs {
     pub first_fault: Option<(f64, Fault)>,
     /// The arm of that fault, on a rig with two.
     pub fault_side: Option<Side>,
+    /// Name of the lost device that caused that fault, also after it has come back.
+    pub fault_device: Option<String>,
     /// The watchdog that the ready check is testing.
     pub tested: Option<Watchdog>,
     /// Whether the loop's thread is running.
@@ -298,6 +300,19 @@ mod tests {
         assert!(alarms.iter().all(|alarm| !alarm.cure.is_empty()), "{alarms:?}");
         assert!(alarms.iter().any(|alarm| alarm.priority == AlarmPriority::Medium && alarm.cause.contains("0.41 N")));
         assert_eq!(alarms.len(), 4);
+    }
+
+    #[test]
+    fn the_fault_of_a_lost_device_names_it_also_after_it_has_come_back() {
+        let fault = Fault::DeviceLost { device: 1, loss: nima_devices::Loss::Silent };
+        let signs = Signs {
+            state: Some(LoopState::Faulted(fault)),
+            first_fault: Some((12.34, fault)),
+            fault_device: Some("right arm".to_owned()),
+            ..healthy()
+        };
+        let alarms = judge(&signs);
+        assert!(alarms[0].cause.contains("right arm") && alarms[0].cause.contains(fault.cause()), "{alarms:?}");
     }
 
     #[test]

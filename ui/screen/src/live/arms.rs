@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 use nima_core::{kinematics::Joints, safety::Gate};
 use nima_machine::{
-    messages::LoopState,
+    messages::{Fault, LoopState},
     rig::{RigPart, Side},
 };
+use nima_words::report_text::role_name;
 
 use super::LiveState;
 use crate::stiffness::ContactStiffness;
@@ -26,6 +27,12 @@ impl LiveState {
             LoopState::Disconnected => own.unwrap_or(LoopState::Disconnected),
             state => state,
         }
+    }
+
+    /// Returns the name of the lost device that caused the first fault; `None` for other faults.
+    pub(super) fn fault_device(&self) -> Option<String> {
+        let Some((_, Fault::DeviceLost { device, .. })) = self.first_fault else { return None };
+        self.roster.get(usize::from(device)).map(|entry| role_name(entry.role))
     }
 
     /// Returns whether the force ceiling acts on this hand.

@@ -383,6 +383,7 @@ impl LiveState {
             state: self.first_tick().map(|_| self.state()),
             first_fault: self.first_fault,
             fault_side: self.is_bimanual().then_some(self.fault_side),
+            fault_device: self.fault_device(),
             tested: self.tested,
             running: self.running,
             silence: if self.is_shown_only() { Duration::ZERO } else { self.tick_at.elapsed() },

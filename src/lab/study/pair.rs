@@ -160,7 +160,7 @@ impl BenchPair {
             noise,
             identifier: Identifier::new(&settings)?,
             link: ProgrammedLink::new(RATE_HZ, trial.delay_s),
-            tracking: TrackingLag::new(RATE_HZ),
+            tracking: TrackingLag::new(RATE_HZ, false),
             renderer: Renderer::new(&settings)?,
             measured: Between::default(),
             led: Between::default(),

@@ -75,7 +75,7 @@ impl LeaderHalf {
             },
             renderer: Renderer::new(settings)?,
             own_motion: settings.own_motion,
-            tracking: TrackingLag::new(rig.rate_hz),
+            tracking: TrackingLag::new(rig.rate_hz, rig.identification.earlier_forces),
             led: Between::default(),
             rendered: RenderedForces::default(),
             gates: HandGates::new(rig),

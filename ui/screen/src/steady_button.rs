@@ -1,8 +1,8 @@
 //! A button whose condition may flicker, for example while a device is lost for a moment.
 //!
 //! A click is never swallowed: it acts, or the button says why not. A short gap in the condition does not disable the button,
-//! and its label does not change while the pointer is down on it. Only a click in the first frame of a button does nothing: nobody
-//! has seen the button yet, and the click was meant for what was drawn in its place before.
+//! and its label does not change while the pointer is down on it. Only a click in the first frame of a button does nothing: the
+//! button has not been seen yet, and the click was meant for what was drawn in its place before.
 
 use std::time::Duration;
 

@@ -128,7 +128,8 @@ pub struct ImpedanceSettings {
     /// Interpretation of the paper in the modes literal and linear.
     pub literal: Recipe,
     /// Computes the forces as sessions with a journal of version 5 did: `best` without holding, no restart of the fit on
-    /// other tissue, single wrong positions used, and the motion held during a gap. For their replay only.
+    /// other tissue, single wrong positions used, the motion held during a gap, and a new lag of the follower used at once. For
+    /// their replay only.
     pub earlier_forces: bool,
 }
 

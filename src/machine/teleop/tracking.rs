@@ -105,7 +105,10 @@ impl TrackingLag {
         if moving && self.filled > behind + self.stride * CANDIDATES {
             self.compare(tip_m, behind);
         }
-        self.lag_samples += (self.found_samples - self.lag_samples).clamp(-self.glide, self.glide);
+        let change = self.found_samples - self.lag_samples;
+        // Assigned, not added, where it is reached: a replay needs the same bits.
+        self.lag_samples =
+            if change.abs() < self.glide { self.found_samples } else { self.lag_samples + self.glide.copysign(change) };
         let whole = self.lag_samples.floor();
         let late = self.back(whole as usize);
         let later = self.back(whole as usize + 1);

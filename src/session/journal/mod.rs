@@ -25,7 +25,8 @@ use parts::ByteWriter;
 ///
 /// Version 5 contains the raw readings of the devices and the true time of each tick; version 6 also the commanded tip
 /// positions. It was introduced when `best` began to hold forces that motion does not explain, when `matched` began to
-/// restart on other tissue, and when wrong positions and gaps were bridged. A journal of version 5 is replayed without these changes
+/// restart on other tissue, when wrong positions and gaps were bridged, and when the lag of the follower began to glide. A
+/// journal of version 5 is replayed without these changes
 /// ([`earlier_forces`](nima_core::impedance::ImpedanceSettings::earlier_forces)), because they would give other forces
 /// than the hand felt.
 pub const VERSION: u16 = 6;

@@ -23,7 +23,7 @@ const MEMORY_S: f64 = 2.0;
 const MOVING_M_S: f64 = 0.005;
 /// The lag in use changes by at most this fraction of a tick per tick, so that the estimated motion is at most a fifth faster or
 /// slower than the command. A jump of the estimate, as when the lag is first known, would look like an impact to the
-/// identification: the force of a pressing hand fell by up to 3 N for 7 ms on the emulated UR5e, which lags by 36 ms.
+/// identification: the force of a pressing hand fell by up to 3 N for 7 ms on the emulated arm, which lags by 36 ms.
 const GLIDE: f64 = 0.2;
 
 #[derive(Clone, Debug)]

@@ -47,13 +47,12 @@ ros2() {
   NIMA_BRIDGE_ROS2=$built/debug/nima-bridge-ros2 timed "$peers/bin/python" tests/peers/run.py "$nima" ros2
 }
 
-# Tests of the feature `department`: a rig and its watchers over TLS. Separate, because zenoh takes minutes to build.
+# Tests of the separate program `department`: a rig and its watchers over TLS. Separate, because zenoh takes minutes to build.
 department() {
   need "${build_packages[@]}" || exit 1
   need_cargo
   as_the_tests_build
-  timed cargo test --locked -p nima-department --features engine
-  timed cargo test --locked -p nima-console --features department --test commands department
+  timed cargo test --locked --manifest-path src/extras/department/Cargo.toml --target-dir "${CARGO_TARGET_DIR:-target}/department"
 }
 
 # Tests of the feature `h264`: endoscope video over RTSP, compared with ffmpeg. Separate, because the decoder is C++.

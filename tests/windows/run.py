@@ -180,7 +180,7 @@ def main():
     chosen = {program.crate for program in programs}
     by_name = {reason: [f"{crate} {name}" for crate, name in tests if crate in chosen] for reason, tests in reasons.items()}
     if by_feature:
-        tell("not built, of a feature with a command of its own (./dev live, department, h264)", by_feature)
+        tell("not built, of a feature with a command of its own (./dev live, h264)", by_feature)
     if by_system:
         tell("not built for Windows, by `#[cfg]`", by_system)
     for reason, tests in by_name.items():

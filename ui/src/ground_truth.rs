@@ -14,7 +14,7 @@ pub(crate) fn now_s() -> f64 {
 }
 
 /// Compares ticks with the ground truth of the emulators.
-pub(crate) trait TruthComparison: Debug {
+pub trait TruthComparison: Debug {
     /// Adds a tick that was received at this time of day, s.
     fn tick(&mut self, tick: &Tick, seen_s: f64);
 

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    nima_console::command::main()
+    nima_console::command::main(&[])
 }

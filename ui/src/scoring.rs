@@ -4,7 +4,8 @@ use std::fmt::Debug;
 
 use nima_machine::messages::Tick;
 
-pub(crate) trait RunScorer: Debug {
+/// Scores a run from its ticks.
+pub trait RunScorer: Debug {
     fn tick(&mut self, tick: &Tick);
 
     /// Returns the score for JSON output; `None` if no arm was engaged.

@@ -38,18 +38,18 @@ pub(crate) struct WatchArguments {
 
 /// Kind of live viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Show {
+pub enum Show {
     Live,
     Share,
     Igtl,
 }
 
 impl Show {
-    /// Returns the option that requests it, and feature that builds it.
+    /// Returns the option that requests it, and the feature or extra that provides it.
     const fn names(self) -> [&'static str; 2] {
         match self {
             Self::Live => ["`--live`", "live"],
-            Self::Share => ["`--share`", "department"],
+            Self::Share => ["`--share`", extras::DEPARTMENT],
             Self::Igtl => ["`--igtl`", "bridges"],
         }
     }
@@ -64,7 +64,8 @@ fn marks_by(library: &Path) -> anyhow::Result<Box<dyn WatchServer>> {
     extras::part(|extra| extra.marks(library)).unwrap_or_else(|| Err(extras::not_built("`--lsl`", "bridges")))
 }
 
-pub(crate) trait WatchServer: std::fmt::Debug {
+/// A server for viewers of one kind.
+pub trait WatchServer: std::fmt::Debug {
     /// Returns the audience for the recorder of the next session, of this plan; its endoscope images arrive through
     /// this queue.
     fn audience(&self, plan: &SimulationPlan, reel: &FrameQueue) -> Box<dyn Audience>;

@@ -7,6 +7,8 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `extra` | what it adds to the console: commands, and the option `--share` |
+//! | `arguments`, `commands` | `nima department` |
 //! | `identity` | certificates: the department, its rigs and its watchers |
 //! | `config` | zenoh's configuration and permissions at each end |
 //! | `keys` | the names under which a rig publishes |
@@ -15,10 +17,12 @@
 //! | `shared_rig` | publishing side, on the rig |
 //! | `watch` | receiving side: discovery of rigs, their screens |
 //! | `record` | records a rig's session on another machine |
-#![cfg(feature = "engine")]
 
+mod arguments;
+mod commands;
 mod config;
 mod error;
+mod extra;
 mod feed;
 pub mod identity;
 mod keys;
@@ -28,9 +32,10 @@ mod shared_rig;
 mod watch;
 
 #[cfg(test)]
-mod tests;
+mod peers_tests;
 
 pub use error::DepartmentError;
+pub use extra::Department;
 pub use identity::{Authority, MachineIdentity, MachineRole};
 pub use record::{RecordStep, RigRecording};
 pub use shared_rig::SharedRig;

@@ -5,7 +5,6 @@ mod calibrate;
 mod check;
 mod completions;
 mod console;
-pub(crate) mod department;
 mod devices;
 mod evaluate;
 mod export;
@@ -29,10 +28,11 @@ use clap::{
 };
 use nima_files::shortened;
 use nima_screen::stderr::print_line;
+pub use run::positive_seconds;
 use tracing::level_filters::LevelFilter;
 
 use crate::{
-    extras,
+    extras::{self, Extra},
     logging::{self, LEVELS},
 };
 
@@ -67,9 +67,6 @@ enum CliCommand {
     Sessions(sessions::SessionsArguments),
     /// Write a report page about recorded sessions: events, times and problems
     Report(report::ReportArguments),
-    /// Manage the rigs of a department: certificates, shared rigs, remote viewing and recording
-    #[command(subcommand, arg_required_else_help = false)]
-    Department(department::DepartmentCommand),
     /// List connected devices and test them; print cause and remedy of each problem
     Devices(devices::DevicesArguments),
     /// Calibrate from a file, or calibrate a whole emulated rig; print held-out errors and a verdict
@@ -117,8 +114,9 @@ fn one_line(text: &str) -> String {
     shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "), MAX)
 }
 
-/// Runs the command line of this process.
-pub fn main() -> ExitCode {
+/// Runs the command line of this process, with the extras that a program outside the workspace adds.
+pub fn main(added: &'static [&'static dyn Extra]) -> ExitCode {
+    extras::add(added);
     let given = match command_line().try_get_matches() {
         Ok(given) => given,
         Err(error) if error.use_stderr() => return usage(&error),
@@ -159,7 +157,6 @@ fn run_own(given: &ArgMatches) -> anyhow::Result<()> {
         CliCommand::Export(arguments) => export::run(&arguments),
         CliCommand::Sessions(arguments) => sessions::run(&arguments),
         CliCommand::Report(arguments) => report::run(&arguments),
-        CliCommand::Department(command) => department::run(&command),
         CliCommand::Devices(arguments) => devices::run(&arguments),
         CliCommand::Calibrate(calibrate) => calibrate::run(&calibrate),
         CliCommand::Check(check) => check::run(&check),

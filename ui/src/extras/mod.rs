@@ -1,5 +1,6 @@
 //! The optional parts of this program. A feature of `Cargo.toml` controls each of them, and only this file lists those in the
-//! build: an extra offers its parts through [`Extra`], and callers request a part by its kind.
+//! build: an extra offers its parts through [`Extra`], and callers request a part by its kind. An extra with very large
+//! libraries is a program outside the workspace instead, which adds itself (`src/extras/department/`).
 //!
 //! An extra has its files in one folder: `screen` is its part of the window, `text` and `words` are its texts.
 
@@ -7,8 +8,6 @@
 mod bridges;
 #[cfg(feature = "camera")]
 mod camera;
-#[cfg(feature = "department")]
-mod department;
 #[cfg(feature = "lab")]
 mod lab;
 #[cfg(feature = "live")]
@@ -20,7 +19,7 @@ mod two_machines;
 #[cfg(feature = "user-studies")]
 mod user_studies;
 
-use std::{net::SocketAddr, path::Path};
+use std::{net::SocketAddr, path::Path, sync::OnceLock};
 
 use clap::{ArgMatches, Subcommand};
 use nima_panels::{PanelExtras, StripUi, Tile};
@@ -29,7 +28,6 @@ use nima_simulation::{ObjectFeed, SimulationPlan};
 use nima_wizards::{Wizard, offer_camera};
 
 use crate::{
-    command::department::DepartmentCommand,
     console::page::Page,
     ground_truth::TruthComparison,
     scoring::RunScorer,
@@ -41,8 +39,6 @@ const BUILT: &[&dyn Extra] = &[
     &bridges::Bridges,
     #[cfg(feature = "camera")]
     &camera::CameraExtra,
-    #[cfg(feature = "department")]
-    &department::Department,
     #[cfg(feature = "lab")]
     &lab::Lab,
     #[cfg(feature = "live")]
@@ -55,9 +51,16 @@ const BUILT: &[&dyn Extra] = &[
     &user_studies::UserStudies,
 ];
 
+/// Extras that a program outside the workspace adds.
+static ADDED: OnceLock<&'static [&'static dyn Extra]> = OnceLock::new();
+
+/// Extra that is a separate program instead of a feature.
+pub(crate) const DEPARTMENT: &str = "department";
+
 /// Commands of extras, with the feature that builds each.
-const COMMANDS: [(&str, &str); 9] = [
+const COMMANDS: [(&str, &str); 10] = [
     ("camera", "camera"),
+    (DEPARTMENT, DEPARTMENT),
     ("emulate", "lab"),
     ("follower", "two-machines"),
     ("identify", "lab"),
@@ -69,7 +72,7 @@ const COMMANDS: [(&str, &str); 9] = [
 ];
 
 /// Parts that an extra can offer.
-pub(crate) trait Extra: Sync {
+pub trait Extra: Sync {
     /// Adds its commands to the command line.
     fn commands(&self, line: clap::Command) -> clap::Command {
         line
@@ -80,17 +83,12 @@ pub(crate) trait Extra: Sync {
         None
     }
 
-    fn department(&self, _command: &DepartmentCommand) -> Option<anyhow::Result<()>> {
-        None
-    }
-
     /// Serves viewers of this kind at this address.
     fn server(&self, _show: Show, _at: SocketAddr) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
         None
     }
 
-    /// Sends event marks over the Lab Streaming Layer, with this file of liblsl or [the installed
-    /// one](crate::watching::INSTALLED).
+    /// Sends event marks over the Lab Streaming Layer, with this file of liblsl; `liblsl` is the installed one.
     fn marks(&self, _library: &Path) -> Option<anyhow::Result<Box<dyn WatchServer>>> {
         None
     }
@@ -137,9 +135,18 @@ pub(crate) trait Extra: Sync {
     }
 }
 
+/// Adds extras of a program outside the workspace; only the first call has an effect.
+pub(crate) fn add(added: &'static [&'static dyn Extra]) {
+    ADDED.get_or_init(|| added);
+}
+
+fn all() -> impl Iterator<Item = &'static dyn Extra> {
+    BUILT.iter().chain(ADDED.get().copied().unwrap_or_default()).copied()
+}
+
 /// Returns the first part of this kind.
-pub(crate) fn part<T>(mut offered: impl FnMut(&'static dyn Extra) -> Option<T>) -> Option<T> {
-    BUILT.iter().find_map(|extra| offered(*extra))
+pub(crate) fn part<T>(offered: impl FnMut(&'static dyn Extra) -> Option<T>) -> Option<T> {
+    all().find_map(offered)
 }
 
 /// Returns whether this build can emulate the devices of a rig.
@@ -159,17 +166,16 @@ pub(crate) fn offer() {
 
 pub(crate) fn begin() {
     offer();
-    for extra in BUILT {
-        extra.begin();
-    }
+    all().for_each(Extra::begin);
 }
 
 /// Adds the commands of all extras.
 pub(crate) fn commands(line: clap::Command) -> clap::Command {
-    BUILT.iter().fold(line, |line, extra| extra.commands(line))
+    all().fold(line, |line, extra| extra.commands(line))
 }
 
-pub(crate) fn given<C: Subcommand>(matches: &ArgMatches) -> Option<Result<C, clap::Error>> {
+/// Returns the given command if it belongs to `C`.
+pub fn given<C: Subcommand>(matches: &ArgMatches) -> Option<Result<C, clap::Error>> {
     let (name, _) = matches.subcommand()?;
     C::has_subcommand(name).then(|| C::from_arg_matches(matches))
 }
@@ -183,11 +189,18 @@ pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow:
     (!has(line, name)).then(|| not_built(&format!("command `{name}`"), feature))
 }
 
-/// Returns the error for a part that another build has.
+/// Returns the error for a part that another build or program has.
 pub(crate) fn not_built(what: &str, feature: &str) -> anyhow::Error {
-    anyhow::anyhow!(
-        "this build has no {what}; build it with `cargo build --release --locked -p nima-console --features {feature}`"
-    )
+    const SEPARATE: &str = "--manifest-path src/extras/department/Cargo.toml";
+    let build = "cargo build --release --locked";
+    if feature == DEPARTMENT {
+        return anyhow::anyhow!(
+            "this program has no {what}; `{build} {SEPARATE}` builds the one that has it, in src/extras/department/target/release"
+        );
+    }
+    let is_separate = ADDED.get().is_some_and(|added| !added.is_empty());
+    let package = if is_separate { SEPARATE } else { "-p nima-console" };
+    anyhow::anyhow!("this build has no {what}; build it with `{build} {package} --features {feature}`")
 }
 
 #[cfg(test)]
@@ -216,7 +229,9 @@ mod tests {
         let below = line.find_subcommand("calibrate").unwrap().get_subcommands();
         let mut known: Vec<&str> = own.chain(below).map(clap::Command::get_name).collect();
         known.sort_unstable();
-        assert_eq!(known, COMMANDS.map(|(command, _)| command));
+        let listed = COMMANDS.map(|(command, _)| command);
+        let listed: Vec<&str> = listed.into_iter().filter(|command| *command != DEPARTMENT).collect();
+        assert_eq!(known, listed);
         assert!(absent_command(&line, "camera").is_none() && absent_command(&Own::command(), "camera").is_some());
         let help = line.find_subcommand("calibrate").and_then(clap::Command::get_about).map(ToString::to_string);
         assert_eq!(help.as_deref(), Some("Its own help"));

@@ -113,14 +113,17 @@ fn every_command_and_flag_in_the_pages_exists() {
     for (page, text) in pages() {
         for command in commands(&text) {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
+            // Another program has this command; its tests read the page.
+            if words[0] == "department" {
+                continue;
+            }
             // These commands have a second word, such as `nima study faults`.
-            let depth = if ["study", "train", "evaluate", "calibrate", "check", "department", "user-study"]
-                .contains(&words[0].as_str())
-            {
-                2
-            } else {
-                1
-            };
+            let depth =
+                if ["study", "train", "evaluate", "calibrate", "check", "user-study"].contains(&words[0].as_str()) {
+                    2
+                } else {
+                    1
+                };
             let named: Vec<String> =
                 words.iter().take(depth).take_while(|word| !word.starts_with('-')).cloned().collect();
             if named.iter().any(|word| word.chars().any(char::is_uppercase)) {

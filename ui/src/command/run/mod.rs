@@ -119,7 +119,7 @@ impl RunArguments {
 const SECONDS_MAX: f64 = 1e7;
 
 /// Returns a number of seconds above zero.
-pub(crate) fn positive_seconds(text: &str) -> Result<f64, String> {
+pub fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= SECONDS_MAX => Ok(seconds),
         Ok(seconds) if seconds > SECONDS_MAX => Err(format!("enter at most {SECONDS_MAX} seconds")),

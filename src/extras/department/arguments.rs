@@ -1,13 +1,11 @@
-//! `nima department`: rigs that others may watch and record. The extra of this name implements it.
+//! The arguments of `nima department`.
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use nima_console::command::positive_seconds;
 use nima_panels::roles::Role;
 use nima_words::language::Language;
-
-use super::run::positive_seconds;
-use crate::extras;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum DepartmentCommand {
@@ -96,9 +94,4 @@ pub(crate) struct RecordArguments {
     /// Seconds to record (default: until Ctrl-C)
     #[arg(long, value_name = "S", value_parser = positive_seconds)]
     pub(crate) seconds: Option<f64>,
-}
-
-pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
-    extras::part(|extra| extra.department(command))
-        .unwrap_or_else(|| Err(extras::not_built("department", "department")))
 }

@@ -1,4 +1,4 @@
-//! The commands of the department, in a build that has them.
+//! Runs `nima department`.
 
 use std::{
     net::{Ipv6Addr, SocketAddr},
@@ -8,8 +8,9 @@ use std::{
 };
 
 use anyhow::{Context as _, bail};
-use nima_department::{
-    Authority, FoundRig, MachineIdentity, MachineRole, RecordStep, RemoteRig, RigRecording, find, find_at,
+use nima_console::{
+    console::monitor::{self, MonitorMessage, MonitorOptions, MonitorSender},
+    shutdown::Leave,
 };
 use nima_machine::config::RigConfig;
 use nima_panels::settings::SettingsStore;
@@ -20,9 +21,9 @@ use nima_simulation::scene::Scene;
 use serde::Serialize;
 
 use crate::{
-    command::department::{DepartmentCommand, MonitorArguments, RecordArguments, RigSelection, RigsArguments},
-    console::monitor::{self, MonitorMessage, MonitorOptions, MonitorSender},
-    shutdown::Leave,
+    Authority, FoundRig, MachineIdentity, MachineRole, RecordStep, RemoteRig, RigRecording,
+    arguments::{DepartmentCommand, MonitorArguments, RecordArguments, RigSelection, RigsArguments},
+    find, find_at,
 };
 
 /// Default port of a shared rig.

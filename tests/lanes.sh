@@ -55,8 +55,8 @@ wires() {
 }
 
 # Tests of milliseconds, rates or small motions: faults of every device in the running loop, the panel's measurements of them, an arm that
-# presses, its jaws, its shutdown, a marker that must follow, and a simulated user with rings in the real window. While any other work is running, even at the lowest priority, they would be repeated for minutes.
-alone=(connecting:: what_goes_wrong_with_any_device killed::a_killed_process the_pid_holds the_sensor_feels an_engaged_arm a_marker_that_follows a_person_carries_a_ring
+# presses, its jaws, its shutdown, a marker that must follow, arms from a URDF, frozen sensors, and a simulated user with rings in the real window. While any other work is running, even at the lowest priority, they would be repeated for minutes.
+alone=(connecting:: what_goes_wrong_with_any_device killed::a_killed_process the_pid_holds the_sensor_feels an_engaged_arm a_marker_that_follows is_led_through repeats_itself a_person_carries_a_ring
   when_a_program_in_c nobody_else_is_heard the_examples_in_python a_haply_handle_feels)
 alone() { timed cargo test --locked --workspace --no-fail-fast --test commands --test screen --test window --test wires -- --ignored "${alone[@]}"; }
 

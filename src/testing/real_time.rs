@@ -1,12 +1,13 @@
 //! Tests in real time. They must not fail because the machine is busy with other work.
 
 use std::{
+    num::NonZero,
     panic::{AssertUnwindSafe, catch_unwind, panic_any, resume_unwind},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
     },
-    thread::{JoinHandle, sleep, spawn},
+    thread::{JoinHandle, available_parallelism, sleep, spawn},
     time::{Duration, Instant},
 };
 
@@ -23,9 +24,10 @@ static HELD_UP_MS: AtomicU64 = AtomicU64::new(0);
 /// alone.
 const FAILURES_MAX: usize = 2;
 const NAP: Duration = Duration::from_millis(1);
-/// A quiet machine wakes a sleeping thread within this time, and never later than `PAUSE`.
+/// A quiet machine wakes a sleeping thread within this time, and never later than `PAUSE`: half of the 20 ms after which
+/// a device counts as silent, because a device and the loop can be delayed in turn.
 const LATE: Duration = Duration::from_millis(3);
-const PAUSE: Duration = Duration::from_millis(20);
+const PAUSE: Duration = Duration::from_millis(10);
 /// If the idle fraction of processor time is smaller than this, threads other than the sleeping one may be delayed
 /// unnoticed.
 const IDLE_FRACTION: f64 = 0.1;
@@ -83,10 +85,11 @@ fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy, 
     false
 }
 
-/// A thread that sleeps for one millisecond at a time and counts how often it wakes late.
+/// Threads that sleep for one millisecond at a time and count how often they wake late: as many as processors, because a
+/// host may pause a single one.
 struct WakeWatch {
     end: Arc<AtomicBool>,
-    thread: JoinHandle<bool>,
+    threads: Vec<JoinHandle<bool>>,
     spent: Option<ProcessorTime>,
 }
 
@@ -110,29 +113,36 @@ fn spent() -> Option<ProcessorTime> {
 impl WakeWatch {
     fn start() -> Self {
         let end = Arc::new(AtomicBool::new(false));
-        let ends = Arc::clone(&end);
-        let thread = spawn(move || {
-            let mut naps = 0_u32;
-            let mut late = 0_u32;
-            let mut longest = Duration::ZERO;
-            while !ends.load(Relaxed) {
-                let begin = Instant::now();
-                sleep(NAP);
-                let over = begin.elapsed().saturating_sub(NAP);
-                naps += 1;
-                late += u32::from(over > LATE);
-                longest = longest.max(over);
-            }
-            longest > PAUSE || late * 100 > naps
-        });
-        Self { end, thread, spent: spent() }
+        let processors = available_parallelism().map_or(1, NonZero::get);
+        let watch = |_| {
+            let ends = Arc::clone(&end);
+            spawn(move || wakes_late(&ends))
+        };
+        let threads = (0..processors).map(watch).collect();
+        Self { end, threads, spent: spent() }
     }
 
     fn was_busy(self) -> bool {
         self.end.store(true, Relaxed);
-        let late = self.thread.join().unwrap_or(true);
+        let late = self.threads.into_iter().any(|thread| thread.join().unwrap_or(true));
         late || self.spent.zip(spent()).is_some_and(|(before, now)| is_full(before, now))
     }
+}
+
+/// Naps until `end`; returns whether it woke late too often or far too late.
+fn wakes_late(end: &AtomicBool) -> bool {
+    let mut naps = 0_u32;
+    let mut late = 0_u32;
+    let mut longest = Duration::ZERO;
+    while !end.load(Relaxed) {
+        let begin = Instant::now();
+        sleep(NAP);
+        let over = begin.elapsed().saturating_sub(NAP);
+        naps += 1;
+        late += u32::from(over > LATE);
+        longest = longest.max(over);
+    }
+    longest > PAUSE || late * 100 > naps
 }
 
 fn is_full(before: ProcessorTime, now: ProcessorTime) -> bool {

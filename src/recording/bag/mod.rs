@@ -2,14 +2,12 @@
 //! `x=/tool/pose.pose.position.x`.
 //!
 //! The messages of the force give the times; quantities of other topics are interpolated to them. Times are those in the
-//! messages' headers, else of the recording. Samples within a gap of another topic are left out.
+//! messages' headers, else of the recording. Samples within a gap of another topic are left out, and so are messages about
+//! other joints.
 
 mod codec;
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use nima_core::impedance::{AXES, Sample};
@@ -19,7 +17,7 @@ use crate::{
     csv::{AXIS_NAMES, ColumnMapping, CsvRecording, RecordingError, Signals},
     session::{ReadError, SessionReader},
 };
-use codec::{BagField, examples};
+use codec::{BagField, BagNumber, BagValue, examples};
 
 /// Encoding of the messages of ROS 2.
 const CDR: &str = "cdr";
@@ -48,13 +46,18 @@ pub enum BagError {
     #[error("recording {path}: topic {topic} has a message that cannot be read; record it again", path = .path.display())]
     Message { path: PathBuf, topic: String },
     #[error(
+        "recording {path}: the time of topic {topic} steps back by {back_s:.3} s, {after_s:.3} s after its first message, as when the clock of the computer is set; split the recording there and use the parts separately",
+        path = .path.display()
+    )]
+    ClockSet { path: PathBuf, topic: String, after_s: f64, back_s: f64 },
+    #[error(
         "recording {path}: only {found} samples have a force and a position within {GAP_S} s; record the topics at the same time and with one clock",
         path = .path.display()
     )]
     TooShort { path: PathBuf, found: usize },
 }
 
-/// Values over time, of one quantity.
+/// Values over time, of one quantity; not a number where the publisher does not know it.
 struct Series {
     times_ns: Vec<u64>,
     values: Vec<f64>,
@@ -184,21 +187,43 @@ fn read_series(
     });
     let channel = channel.ok_or_else(missing)?;
     let field = BagField::find(&channel.encoding.schema, field).ok_or_else(missing)?;
-    let mut values = BTreeMap::new();
+    let topic = || quoted(&channel.topic);
+    let mut series = Series { times_ns: Vec::new(), values: Vec::new() };
+    let mut has_messages = false;
     for message in reader.messages(&[&channel.topic], 0..u64::MAX) {
         let message = message?;
-        let (stamp_ns, value) = field
-            .read(message.data())
-            .ok_or_else(|| BagError::Message { path: path.to_owned(), topic: quoted(&channel.topic) })?;
-        values.insert(stamp_ns.unwrap_or_else(|| message.log_time_ns()), value * source.scale());
+        has_messages = true;
+        let damaged = || BagError::Message { path: path.to_owned(), topic: topic() };
+        let BagValue { stamp_ns, number } = field.read(message.data()).ok_or_else(damaged)?;
+        let BagNumber::Given(value) = number else { continue };
+        let time_ns = stamp_ns.unwrap_or_else(|| message.log_time_ns());
+        if let (Some(&first_ns), Some(&last_ns)) = (series.times_ns.first(), series.times_ns.last()) {
+            let seconds = |from_ns: u64, to_ns: u64| to_ns.saturating_sub(from_ns) as f64 * 1e-9;
+            if time_ns < last_ns {
+                let [after_s, back_s] = [seconds(first_ns, last_ns), seconds(time_ns, last_ns)];
+                return Err(BagError::ClockSet { path: path.to_owned(), topic: topic(), after_s, back_s });
+            }
+            // The same message again.
+            if time_ns == last_ns {
+                continue;
+            }
+        }
+        series.times_ns.push(time_ns);
+        series.values.push(value * source.scale());
     }
-    let (times_ns, values) = values.into_iter().unzip();
-    Ok(Series { times_ns, values })
+    if has_messages && series.times_ns.is_empty() {
+        return Err(missing());
+    }
+    Ok(series)
 }
 
 impl Series {
-    /// Returns the value at a time, between two messages that are close enough.
+    /// Returns the value at a time, between two messages that are close enough; `None` if it is unknown.
     fn at(&self, time_ns: u64) -> Option<f64> {
+        self.between(time_ns).filter(|value| value.is_finite())
+    }
+
+    fn between(&self, time_ns: u64) -> Option<f64> {
         let next = self.times_ns.partition_point(|known| *known < time_ns);
         let (&after_ns, &after) = (self.times_ns.get(next)?, self.values.get(next)?);
         if after_ns == time_ns {
@@ -323,5 +348,49 @@ mod tests {
         assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("no .mcap file"));
         std::fs::write(empty.path().join("bag_0.db3"), "").unwrap();
         assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("ros2 bag convert"));
+    }
+
+    /// Writes joint states of an arm, of a gripper on the same topic, and one unknown angle; the clock goes by `time_ns`.
+    fn joint_states(path: &Path, time_ns: impl Fn(u64) -> u64) {
+        let mut writer = SessionWriter::create(path, "ros2").unwrap();
+        let joints = writer.channel("/joint_states", encoding("sensor_msgs/msg/JointState")).unwrap();
+        let wrench = writer.channel("/ft/wrench", encoding("geometry_msgs/msg/WrenchStamped")).unwrap();
+        for tick in 0..100_u64 {
+            let stamped = || CdrWriter::new(false).header(1_764_314_756_000_000_000 + time_ns(tick));
+            let state = |name: &str, rad: f64| stamped().u32(1).text(name).u32(1).f64s(&[rad]).u32(0).u32(0);
+            let rad = if tick == 50 { f64::NAN } else { tick as f64 };
+            writer.message(joints, tick * 2_000_000, &state("elbow", rad).0).unwrap();
+            writer.message(joints, tick * 2_000_000 + 1, &state("finger", 7.0).0).unwrap();
+            let force = stamped().f64s(&[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+            writer.message(wrench, tick * 2_000_000 + 2, &force.0).unwrap();
+        }
+        writer.finish().unwrap();
+    }
+
+    #[test]
+    fn a_joint_that_only_some_messages_have_is_read_from_these() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        joint_states(&path, |tick| tick * 2_000_000);
+        let maps = mapping(&["z=/joint_states.position.elbow", "fz=/ft/wrench.wrench.force.z"]);
+        let looked = read_signals(&path, &maps).unwrap();
+        assert_eq!((looked.rows.len(), looked.rows[49].position_m.z), (100, 49.0));
+        assert!(looked.rows[50].position_m.z.is_nan(), "an angle that the publisher does not know stays unknown");
+        let recording = read(&path, &maps).unwrap();
+        assert!(recording.samples.iter().all(|sample| sample.position_m.x.is_finite()));
+        let none = read(&path, &mapping(&["z=/joint_states.position.knee", "fz=/ft/wrench.wrench.force.z"]));
+        assert!(none.unwrap_err().to_string().contains("/joint_states.position.knee"));
+    }
+
+    #[test]
+    fn a_clock_that_was_set_back_is_named_and_nothing_is_sorted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        joint_states(&path, |tick| if tick < 60 { tick * 2_000_000 } else { (tick - 40) * 2_000_000 });
+        let maps = mapping(&["z=/joint_states.position.elbow", "fz=/ft/wrench.wrench.force.z"]);
+        for refused in [read(&path, &maps).unwrap_err(), read_signals(&path, &maps).unwrap_err()] {
+            let words = refused.to_string();
+            assert!(words.contains("steps back by 0.078 s, 0.118 s after") && words.contains("split"), "{words}");
+        }
     }
 }

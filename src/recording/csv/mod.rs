@@ -69,6 +69,16 @@ pub enum RecordingError {
         field: String,
     },
     #[error(
+        "recording {path}, line {line}, column \"{column}\": \"{field}\" has a decimal comma, but the rows before have decimal points or whole numbers; write all numbers in one way"
+    )]
+    DecimalComma {
+        path: PathBuf,
+        /// From 1.
+        line: u64,
+        column: String,
+        field: String,
+    },
+    #[error(
         "recording {path}, line {line}, column \"{column}\": \"{field}\" is not a time; give seconds, a date and time such as 2026-11-28T07:25:56.125, or two columns with --map t=date+time"
     )]
     NotATime {
@@ -370,6 +380,14 @@ mod tests {
         let words = read(text, &[]).unwrap_err().to_string();
         assert!(words.contains("line 4: the time steps back by 0.75 s") && words.contains("split the file"), "{words}");
         assert!(!words.contains("sort"), "{words}");
+    }
+
+    #[test]
+    fn a_decimal_comma_far_below_is_named() {
+        let row = |number: u32| format!("{number};1;2\n");
+        let text: String = std::iter::once("t_s;x_m;fx_n\n".to_owned()).chain((0..60).map(row)).collect();
+        let words = read(&(text + "60;1,5;2\n"), &[]).unwrap_err().to_string();
+        assert!(words.contains("line 62") && words.contains("\"1,5\" has a decimal comma"), "{words}");
     }
 
     #[test]

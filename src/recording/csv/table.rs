@@ -155,7 +155,12 @@ impl CsvTable {
     fn not_a_number(&self, column: &CsvColumn) -> RecordingError {
         let path = self.path.clone();
         let line = self.line();
-        RecordingError::NotANumber { path, line, column: quoted(&column.name), field: quoted(self.field(column)) }
+        let [name, field] = [column.name.as_str(), self.field(column)].map(quoted);
+        // The dialect is found in the first rows only.
+        if self.field(column).replacen(',', ".", 1).parse::<f64>().is_ok_and(f64::is_finite) {
+            return RecordingError::DecimalComma { path, line, column: name, field };
+        }
+        RecordingError::NotANumber { path, line, column: name, field }
     }
 
     pub(super) fn not_a_time(&self, column: &CsvColumn) -> RecordingError {

@@ -145,13 +145,22 @@ pub struct DeviceIdentity {
 
 /// Returns whether two serial numbers are equal: `853`, `SN853` and `SN000853` are. An empty number equals no other.
 pub fn same_serial(one: &str, other: &str) -> bool {
-    let [one, other] = [one, other].map(|serial| serial.trim().trim_start_matches("SN").trim_start_matches('0'));
-    !one.is_empty() && one == other
+    let number = |serial: &str| {
+        let serial = serial.trim().to_uppercase();
+        serial.trim_start_matches("SN").trim_start_matches('0').to_owned()
+    };
+    !number(one).is_empty() && number(one) == number(other)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_serial_number_is_the_same_in_every_spelling() {
+        assert!(same_serial("853", "SN000853") && same_serial(" sn853", "853") && same_serial("049d", "049D"));
+        assert!(!same_serial("853", "8530") && !same_serial("", "") && !same_serial("SN0", "0"));
+    }
 
     #[test]
     fn the_rate_is_found_one_by_one_and_in_batches() {

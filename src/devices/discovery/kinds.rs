@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use nima_core::kinematics::ArmModel;
-
 use super::{DataTiming, DeviceProbe, FoundDevice, Probe, SerialProbe, TcpProbe};
 use crate::{
     DeviceError, ati,
@@ -141,7 +139,7 @@ fn kinova(place: &str) -> Result<Box<dyn Probe>, DeviceError> {
     let settings = kinova::KinovaSettings::at(place);
     let allowed = "HOST, or HOST tcp=PORT udp=PORT; a Gen3 leaves the factory with 192.168.1.10";
     let settings = settings.ok_or_else(|| wrong("kinova", place, allowed))?;
-    Ok(super::probes::arm("kinova", settings, ArmModel::GEN3))
+    Ok(super::probes::arm("kinova", settings, None))
 }
 
 fn force_dimension(place: &str) -> Result<Box<dyn Probe>, DeviceError> {

@@ -21,10 +21,15 @@ pub fn handle(name: &str, settings: force_dimension::ForceDimensionSettings) -> 
     Box::new(DeviceProbe::new(name, place, DataTiming::Always, move || force_dimension::open(&settings)))
 }
 
-pub fn arm(name: &str, settings: kinova::KinovaSettings, model: ArmModel) -> Box<dyn Probe> {
+/// Without a `model`, the number of its joints is not known.
+pub fn arm(name: &str, settings: kinova::KinovaSettings, model: Option<ArmModel>) -> Box<dyn Probe> {
     let place = format!("{}:{}", settings.host, settings.tcp_port);
     // As long as the rig would wait; an address without an answer is reported after one such time.
     let extra = Duration::try_from_secs_f64(settings.timeout_s).unwrap_or_default();
+    let Some(model) = model else {
+        let open = move || kinova::open_to_read(&settings);
+        return Box::new(DeviceProbe::new(name, place, DataTiming::Always, open).with_extra(extra));
+    };
     let open = move || kinova::open_clearing(&settings, &model, &kinova::FaultClearing::default());
     Box::new(DeviceProbe::new(name, place, DataTiming::Always, open).with_extra(extra))
 }

@@ -82,14 +82,22 @@ pub(super) fn meet(line: &mut dyn ByteStream, settings: &HaplySettings) -> Resul
     };
     let identity = info.identity();
     if let Some(expected) = &settings.serial_number
-        && !same_serial(&expected.to_uppercase(), &identity.serial)
+        && !same_serial(expected, &identity.serial)
     {
         return Err(DeviceError::OtherSerial { place, expected: expected.clone(), found: identity.serial });
     }
-    drain(line).map_err(gone)?;
-    line.send(&force_request([0.0; 3])).map_err(gone)?;
-    let answer = received(line, STATE_BYTES).map_err(gone)?;
-    match HaplyState::decode(&answer) {
+    let mut answer = Vec::new();
+    let mut state = None;
+    for _ in 0..ATTEMPTS {
+        drain(line).map_err(gone)?;
+        line.send(&force_request([0.0; 3])).map_err(gone)?;
+        answer = received(line, STATE_BYTES).map_err(gone)?;
+        state = answer.windows(STATE_BYTES).rev().find_map(HaplyState::decode);
+        if state.is_some() {
+            break;
+        }
+    }
+    match state {
         Some(state) if state.is_possible() => Ok(identity),
         Some(_) => Err(DeviceError::NotReady {
             place,

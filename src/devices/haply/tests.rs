@@ -27,6 +27,8 @@ struct Inner {
     gone: bool,
     /// Sent instead of an answer.
     instead: Option<Vec<u8>>,
+    /// Byte of an older answer that arrives with the next position.
+    late: Option<u8>,
 }
 
 #[derive(Clone)]
@@ -37,7 +39,8 @@ impl Fake {
         let state = HaplyState { position_m: CENTRE_M.map(|axis| axis as f32), velocity_m_s: [0.0; 3] };
         // The rest of an older answer.
         let waiting = VecDeque::from([0x2B, 1, 2]);
-        let inner = Inner { state, waiting, forces_n: Vec::new(), answers: true, gone: false, instead: None };
+        let inner =
+            Inner { state, waiting, forces_n: Vec::new(), answers: true, gone: false, instead: None, late: None };
         Self(Arc::new(Mutex::new(inner)))
     }
 
@@ -73,6 +76,8 @@ impl ByteStream for Fake {
             None if bytes == [WAKE_UP] => INFO.encode().to_vec(),
             None => inner.state.encode().to_vec(),
         };
+        let late = if bytes == [WAKE_UP] { None } else { inner.late.take() };
+        inner.waiting.extend(late);
         inner.waiting.extend(answer);
         Ok(())
     }
@@ -82,6 +87,13 @@ fn opened(settings: &HaplySettings) -> (Fake, HaplyDriver) {
     let fake = Fake::new();
     let driver = HaplyDriver::over(Box::new(fake.clone()), settings).unwrap();
     (fake, driver)
+}
+
+#[test]
+fn a_late_byte_before_the_first_position_is_skipped() {
+    let fake = Fake::new();
+    fake.change(|inner| inner.late = Some(0x2B));
+    assert!(HaplyDriver::over(Box::new(fake), &HaplySettings::at("/dev/ttyACM0")).is_ok());
 }
 
 /// Runs ticks of the loop with this force; returns the newest reading.

@@ -71,9 +71,11 @@ impl PedalSettings {
             let allowed = "at most eight pairs of a byte from 0 to 7 and a bit from 0 to 7";
             return Err(setting("bits", format!("{:?}", self.bits), allowed));
         }
+        let switches = if self.bits.is_empty() { KEYS_MAX } else { self.bits.len() };
         for (key, switch) in [("clutch", Some(self.clutch)), ("presence", self.presence)] {
-            if let Some(switch) = switch.filter(|switch| *switch >= KEYS_MAX as u32) {
-                return Err(setting(key, switch.to_string(), "a switch from 0 to 7"));
+            if let Some(switch) = switch.filter(|switch| *switch >= switches as u32) {
+                let allowed = format!("a switch from 0 to {}", switches - 1);
+                return Err(setting(key, switch.to_string(), &allowed));
             }
         }
         if self.presence == Some(self.clutch) {

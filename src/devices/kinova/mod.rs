@@ -1,4 +1,4 @@
-//! Kinova Gen3 with 7 joints over the Kortex API 2.x: TCP for calls, UDP for the cycle of 1 kHz.
+//! Kinova Gen3 with 6 or 7 joints over the Kortex API 2.x: TCP for calls, UDP for the cycle of 1 kHz.
 //!
 //! - [`KinovaDriver`] reads [`ArmReading`](crate::ArmReading)s: angles in rad, unwrapped; joint torques in Nm with the sign
 //!   of commands. The tool's pose and twist are in [`ToolReading`].
@@ -32,5 +32,5 @@ pub mod wire;
 mod golden_tests;
 
 pub use driver::{CallAnswer, KinovaDriver, KinovaRefusal, ToolReading, ToolTwist, TwistFrame};
-pub use opening::{FaultClearing, open, open_clearing};
+pub use opening::{FaultClearing, open, open_clearing, open_to_read};
 pub use settings::KinovaSettings;

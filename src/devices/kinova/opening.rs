@@ -21,7 +21,7 @@ use super::{
     session::{KinovaFailure, KinovaLines},
     settings::KinovaSettings,
 };
-use crate::{DeviceError, DeviceIdentity};
+use crate::{ARM_JOINTS, ArmReading, Device, DeviceError, DeviceIdentity};
 
 /// A person's request to clear the faults of an arm. It is kept until the arm is next opened, because an arm in fault
 /// is never connected.
@@ -56,10 +56,27 @@ pub fn open_clearing(
     model: &ArmModel,
     clearing: &FaultClearing,
 ) -> Result<KinovaDriver, DeviceError> {
+    open_with(settings, model, Some(model.joints()), clearing)
+}
+
+/// Opens an arm with six or seven joints, for a test without a rig file.
+///
+/// # Errors
+/// The errors of [`open`], except for the number of joints.
+pub fn open_to_read(settings: &KinovaSettings) -> Result<impl Device<Reading = ArmReading> + use<>, DeviceError> {
+    open_with(settings, &ArmModel::GEN3, None, &FaultClearing::default())
+}
+
+fn open_with(
+    settings: &KinovaSettings,
+    model: &ArmModel,
+    joints: Option<usize>,
+    clearing: &FaultClearing,
+) -> Result<KinovaDriver, DeviceError> {
     settings.check()?;
     let mut lines = KinovaLines::connect(settings)?;
     lines.log_in(settings)?;
-    let opened = prepare(&mut lines, settings, model.joints(), clearing);
+    let opened = prepare(&mut lines, settings, joints, clearing);
     match opened {
         Ok((identity, feedback)) => Ok(KinovaDriver::new(settings, model, lines, identity, &feedback)),
         Err(trouble) => {
@@ -73,13 +90,14 @@ pub fn open_clearing(
 fn prepare(
     lines: &mut KinovaLines,
     settings: &KinovaSettings,
-    expected: usize,
+    expected: Option<usize>,
     clearing: &FaultClearing,
 ) -> Result<(DeviceIdentity, KinovaFeedback), DeviceError> {
-    let joints: KinovaNumber = ask(lines, Rpc::ACTUATOR_COUNT)?;
-    if joints.value as usize != expected {
+    let joints = ask::<KinovaNumber>(lines, Rpc::ACTUATOR_COUNT)?.value as usize;
+    let expected = expected.unwrap_or_else(|| joints.clamp(6, ARM_JOINTS));
+    if joints != expected {
         let expected = format!("arm with {expected} joints");
-        let found = format!("arm with {} joints", joints.value);
+        let found = format!("arm with {joints} joints");
         return Err(DeviceError::WrongProduct { place: lines.place.clone(), expected, found });
     }
     let identity = identity(lines)?;
@@ -99,7 +117,7 @@ fn prepare(
         let cure = "Wait until the arm has started, or stop its current action on its web page.".to_owned();
         return Err(DeviceError::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
     }
-    let feedback = first_feedback(lines, expected)?;
+    let feedback = first_feedback(lines, joints)?;
     let faults = KinovaFaults { in_fault: state == ArmState::IN_FAULT, ..KinovaFaults::of(&feedback) };
     if faults.any() {
         return Err(DeviceError::DeviceFault {

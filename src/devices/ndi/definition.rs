@@ -11,6 +11,8 @@ pub const DEFINITION: usize = 1024;
 /// Length of the used part, whose checksum is in bytes 4 and 5, little endian: the sum of all later bytes modulo 65536.
 /// Found in 18 of 18 public files.
 const USED: usize = 752;
+/// Maximum length of a file: a definition with zeros behind it.
+const FILE_MAX: u64 = 1 << 16;
 // Every tool definition (`.rom`) begins with these bytes; another file is refused before it is sent.
 const BEGIN: &[u8] = b"NDI\0";
 const SUMMED: std::ops::Range<usize> = 6..USED;
@@ -27,10 +29,10 @@ impl NdiDefinition {
     pub fn load(key: &str, path: &Path) -> Result<Self, DeviceError> {
         let refuse =
             |reason: String| DeviceError::File { key: key.to_owned(), path: path.display().to_string(), reason };
-        let file = nima_files::read(path, DEFINITION as u64)
-            .map_err(|error| refuse(format!("the file cannot be read ({error})")))?;
+        let file =
+            nima_files::read(path, FILE_MAX).map_err(|error| refuse(format!("the file cannot be read ({error})")))?;
         if !file.starts_with(BEGIN) {
-            return Err(refuse("the file is not a tool definition of NDI (.rom, at most 1024 bytes)".to_owned()));
+            return Err(refuse("the file is not a tool definition of NDI (.rom)".to_owned()));
         }
         if file.len() < USED {
             return Err(refuse(format!("the file was cut: it has {} bytes, a tool definition has {USED}", file.len())));
@@ -42,7 +44,7 @@ impl NdiDefinition {
             return Err(refuse("the file is damaged: its checksum does not match its content".to_owned()));
         }
         let mut bytes = Box::new([0; DEFINITION]);
-        bytes[..file.len()].copy_from_slice(&file);
+        bytes[..USED].copy_from_slice(&file[..USED]);
         Ok(Self(bytes))
     }
 
@@ -87,7 +89,7 @@ mod tests {
         fs::File::create(place("large.rom")).unwrap().set_len(1 << 40).unwrap();
         let cases = [
             (place("pipe.rom"), "it is a pipe"),
-            (place("large.rom"), "it is larger than the limit of 1024 bytes"),
+            (place("large.rom"), "it is larger than the limit of 65536 bytes"),
             ("/dev/zero".into(), "it is a device"),
             (folder.path().to_owned(), "it is a folder"),
         ];
@@ -109,14 +111,16 @@ mod tests {
         };
         let good = NdiDefinition::emulated("probe");
         assert_eq!(load(good.bytes()).as_ref(), Ok(&good));
-        assert_eq!(load(&[good.bytes(), &[0; 272]].concat()).as_ref(), Ok(&good), "zeros may follow");
+        for zeros in [272, 3000] {
+            assert_eq!(load(&[good.bytes(), &vec![0; zeros]].concat()).as_ref(), Ok(&good), "zeros may follow");
+        }
         let mut damaged = good.bytes().to_vec();
         damaged[600] ^= 1;
         let cases = [
             (good.bytes()[..751].to_vec(), "was cut: it has 751 bytes"),
             (damaged, "damaged"),
             ([good.bytes(), &good.bytes()[..272]].concat(), "data after byte 752"),
-            ([good.bytes(), good.bytes()].concat(), "larger than the limit"),
+            ([good.bytes(), good.bytes()].concat(), "data after byte 752"),
         ];
         for (bytes, words) in cases {
             let trouble = load(&bytes).unwrap_err().to_string();

@@ -54,10 +54,10 @@ pub enum SchedulingLack {
 fn is_container() -> bool {
     static FOUND: OnceLock<bool> = OnceLock::new();
     *FOUND.get_or_init(|| {
-        let marks = ["/.dockerenv", "/run/.containerenv"];
+        let marks = ["/.dockerenv", "/run/.containerenv", "/run/systemd/container"];
         let group = std::fs::read_to_string("/proc/1/cgroup").unwrap_or_default();
         marks.iter().any(|mark| Path::new(mark).exists())
-            || std::env::var_os("container").is_some()
+            || ["container", "KUBERNETES_SERVICE_HOST"].iter().any(|name| std::env::var_os(name).is_some())
             || is_container_group(&group)
     })
 }

@@ -199,7 +199,7 @@ fn arms(part: RigPart, devices: &RigSettings, place: &str) -> Vec<SearchScope> {
         place: place.to_owned(),
         serial: None,
         changes,
-        probe: probes::arm(part.name(), settings, model),
+        probe: probes::arm(part.name(), settings, Some(model)),
     }]
 }
 

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use crate::{
     CapReading,
     hid::{
-        HidIdentity, HidSource,
+        HidIdentity, HidSource, PedalSettings,
         cap_codec::{self, BadReport, CapReport, CapState, POSSIBLE, RELEASE_AFTER_S, counts_of, light},
         pedal_codec::{self, PedalLayout},
         spacenavd::{EVENT_LENGTH, SpacenavdEvent},
@@ -16,6 +16,17 @@ const KEYBOARD: PedalLayout = PedalLayout::Keyboard { keys: [5, 4, 6, 0, 0, 0, 0
 
 fn near(got: f64, expected: f64) -> bool {
     (got - expected).abs() < 1e-3
+}
+
+#[test]
+fn a_switch_that_the_pedal_does_not_have_is_refused() {
+    let pedal =
+        |clutch, presence| PedalSettings { bits: vec![[0, 0], [0, 1]], clutch, presence, ..PedalSettings::default() };
+    assert!(pedal(1, Some(0)).roles().is_ok());
+    for (refused, key) in [(pedal(2, None), "clutch = 2"), (pedal(0, Some(5)), "presence = 5")] {
+        let words = refused.roles().unwrap_err().to_string();
+        assert!(words.contains(key) && words.contains("from 0 to 1"), "{words}");
+    }
 }
 
 #[test]

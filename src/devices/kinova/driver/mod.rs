@@ -128,7 +128,7 @@ impl KinovaDriver {
             cycle: Cycle::default(),
             feedback: *feedback,
             joint_rad: feedback.actuators.map(|a| unwrapped(a.position_deg, 0.0)),
-            command: KinovaCommand { frame_id: 0, actuators: vec![ActuatorCommand::default(); model.joints()] },
+            command: KinovaCommand { frame_id: 0, actuators: vec![ActuatorCommand::default(); feedback.count] },
             frame_id: 0,
             now_s: 0.0,
             sent_s: None,

@@ -147,7 +147,7 @@ impl FollowerSettings {
     pub(in crate::rig) fn probe(&self, name: &str, model: &ArmModel) -> Box<dyn Probe> {
         let model = *model;
         match self.clone() {
-            Self::Kinova(settings) => probes::arm(name, settings, model),
+            Self::Kinova(settings) => probes::arm(name, settings, Some(model)),
             Self::Simulated(settings) => {
                 let open = move || simulated_arm::SimulatedArmDriver::open(&settings, &model);
                 Box::new(DeviceProbe::new(name, "this program".to_owned(), DataTiming::Always, open))

@@ -3,11 +3,13 @@
 use std::{
     io::{Read as _, Write as _},
     net::TcpListener,
+    time::Duration,
 };
 
 use nima_core::kinematics::ArmModel;
 use nima_devices::{
     ARM_JOINTS, DeviceError,
+    discovery::probe_named,
     kinova::{FaultClearing, KinovaSettings, open, open_clearing},
 };
 use nima_machine::config::urdf::{ChainEnds, chain_of};
@@ -90,6 +92,12 @@ fn a_gen3_with_six_joints_is_led_by_its_description_and_no_other_arm_is() {
         assert!(matches!(other, DeviceError::WrongProduct { found, .. } if found == "arm with 7 joints"));
         let body = StandIn::at([0.3; ARM_JOINTS]);
         let (_serving, settings) = started_with(EmulatedKinova { joints: 6, ..patient() }, body);
+        let found =
+            probe_named(&format!("kinova={} tcp={} udp={}", settings.host, settings.tcp_port, settings.udp_port))
+                .unwrap()
+                .probe(Duration::from_secs(5))
+                .unwrap();
+        assert!(found.readings > 0 && found.identity.serial == patient().serial, "without a rig file: {found:?}");
         let driver = open_clearing(&settings, &model, &FaultClearing::default()).unwrap();
         let mut ticking = Ticking { driver, now_s: 0.0, reading: None };
         ticking.enter_low_level();

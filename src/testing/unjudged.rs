@@ -8,10 +8,15 @@ use std::{
     thread::current,
 };
 
-/// Returns the path of a real recording, `../shared/data/FILE` as seen from the workspace. The recordings are not part of the repository:
-/// `None`, reported as `data absent`, if there is no such file.
+/// Returns the path of a real recording in `../shared/data`; see [`shared`].
 pub fn recording(file: &str) -> Option<PathBuf> {
-    let path = data_folder().join(file);
+    shared(&format!("data/{file}"))
+}
+
+/// Returns the path `../shared/FILE` as seen from the workspace. These files are not part of the repository: `None`, reported
+/// as `data absent`, if there is no such file.
+pub fn shared(file: &str) -> Option<PathBuf> {
+    let path = shared_folder().join(file);
     let found = path.is_file();
     if !found {
         report("data absent", &path.display());
@@ -40,10 +45,10 @@ fn line(what: &str, test: &str, reason: &dyn Display) -> String {
     format!("{what}: {test} ({reason})\n")
 }
 
-fn data_folder() -> PathBuf {
+fn shared_folder() -> PathBuf {
     let this_crate = Path::new(env!("CARGO_MANIFEST_DIR"));
     let workspace = this_crate.ancestors().find(|folder| folder.join("Cargo.lock").is_file());
-    workspace.unwrap_or(this_crate).join("../shared/data")
+    workspace.unwrap_or(this_crate).join("../shared")
 }
 
 #[cfg(test)]
@@ -52,10 +57,10 @@ mod tests {
 
     #[test]
     fn the_data_are_beside_the_workspace() {
-        let workspace = data_folder().join("../../").canonicalize();
+        let around = shared_folder().join("..").canonicalize();
         // Without the folder `shared` the path leads nowhere.
-        assert!(workspace.is_err() || !workspace.unwrap().join("Cargo.lock").exists());
-        let text = std::fs::read_to_string(data_folder().ancestors().nth(3).unwrap().join("Cargo.toml")).unwrap();
+        assert!(around.is_err() || !around.unwrap().join("Cargo.lock").exists());
+        let text = std::fs::read_to_string(shared_folder().ancestors().nth(2).unwrap().join("Cargo.toml")).unwrap();
         assert!(text.contains("[workspace]"));
     }
 

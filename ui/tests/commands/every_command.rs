@@ -324,6 +324,7 @@ fn unusable_arguments_exit_non_zero() {
     for arguments in [&["fly"][..], &["run", "--seconds", "-1"], &["run", "--mode", "magic"], &["identify"]] {
         refused(arguments, &["--help"]);
     }
+    refused(&["emulate", "rig", "--set", "kinova.joints=6"], &["--set applies only to single devices"]);
     assert!(nima(&["identify", "--help"]).status.success());
 }
 
@@ -341,4 +342,19 @@ fn without_a_display_the_console_says_so_with_its_own_exit_code() {
 fn run_refuses_a_wrist_that_is_not_calibrated() {
     refused(&["run", "--virtual", "--scene", "palpation"], &["Palpation through a trocar", "--calibrate gravity"]);
     refused(&["run", "--virtual", "--scene", "gravity"], &["Gravity calibration", "cannot be engaged"]);
+}
+
+#[test]
+fn a_program_without_the_department_names_the_build_that_has_it() {
+    for arguments in [
+        &["run", "--share", "--seconds", "1"][..],
+        &["department", "rigs"],
+        &["department", "create", "lab"],
+        &["department", "monitor", "--at", "127.0.0.1"],
+    ] {
+        let output = nima(arguments);
+        let report = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && report.contains("src/extras/department/Cargo.toml"), "{report}");
+        assert_eq!(report.lines().count(), 1, "{report}");
+    }
 }

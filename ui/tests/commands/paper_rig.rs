@@ -26,6 +26,11 @@ fn alone(arguments: &[&str]) -> Option<Output> {
         command.args(["--map-root-user", "--net", program]).args(arguments).env("NIMA_DATA_DIR", folder);
         command.env("XDG_RUNTIME_DIR", folder).env_remove("FDSDK").output()
     };
+    let ports = ["/dev/ttyACM", "/dev/ttyUSB"];
+    if ports.iter().any(|port| (0..4).any(|number| Path::new(&format!("{port}{number}")).exists())) {
+        unjudged::left_out("this computer has serial devices, which the rig would open");
+        return None;
+    }
     let folder = tempfile::tempdir().unwrap();
     if !inside("true", &[], folder.path()).is_ok_and(|tried| tried.status.success()) {
         unjudged::left_out("no network namespace can be made");

@@ -59,6 +59,11 @@ pub(super) fn run(arguments: &EmulateArguments) -> anyhow::Result<()> {
             "--fault applies only to single devices: for a rig or a link write `fault DEVICE NAME` to standard input"
         );
     }
+    if !arguments.set.is_empty() && arguments.devices.iter().any(|name| name == "rig") {
+        bail!(
+            "--set applies only to single devices and links: write the settings of an emulated rig into its rig file"
+        );
+    }
     #[cfg(unix)]
     if arguments.devices == ["rig"] {
         return rig::run(

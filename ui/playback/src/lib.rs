@@ -54,7 +54,7 @@ const SETTLED_S: f64 = 0.02;
 #[derive(Debug)]
 pub struct Playback {
     pub path: PathBuf,
-    /// The signals of another program's recording; `None`: a session.
+    /// The signals of another program's recording; `None`: a session, or not open yet.
     signals: Option<Arc<Signals>>,
     worker: PastWorker,
     about: Option<OpenSessionInfo>,
@@ -121,27 +121,24 @@ impl OperatorLines {
 }
 
 impl Playback {
-    /// Opens a session at its start; `scene` draws the operating field.
+    /// Opens a session at its start, or another program's recording at its end, so that all of it can be seen; `scene` draws
+    /// the operating field.
     pub fn open(path: &Path, ctx: &Context, scene: SceneView) -> Self {
         Self::open_any(path, None, ctx, scene)
     }
 
-    /// Opens another program's recording at its end, so that all of it can be seen.
+    /// Shows these signals of another program's recording.
     pub fn open_signals(path: &Path, signals: &Arc<Signals>, ctx: &Context) -> Self {
-        let end_s = signals.end_s();
-        let mut past = Self::open_any(path, Some(Arc::clone(signals)), ctx, SceneView::default());
-        signals_view::choose(signals, &mut past.panels.forces);
-        past.show(end_s);
-        past
+        Self::open_any(path, Some(Arc::clone(signals)), ctx, SceneView::default())
     }
 
     fn open_any(path: &Path, signals: Option<Arc<Signals>>, ctx: &Context, scene: SceneView) -> Self {
         let wakes = ctx.clone();
-        let worker = PastWorker::start(path, signals.clone(), move || wakes.request_repaint());
+        let worker = PastWorker::start(path, signals, move || wakes.request_repaint());
         worker.show(0.0);
         Self {
             path: path.to_path_buf(),
-            signals,
+            signals: None,
             worker,
             about: None,
             live: None,
@@ -226,16 +223,20 @@ impl Playback {
     fn take(&mut self, answer: WorkerAnswer) {
         match answer {
             WorkerAnswer::Opened(opened) => {
-                let SessionOverview { begin_ns, end_s, calibrations, devices, endoscope } = *opened;
+                let SessionOverview { begin_ns, end_s, calibrations, devices, endoscope, signals } = *opened;
                 if let Some(endoscope) = endoscope {
                     self.panels.eyes.project(&self.path, endoscope, &self.ctx);
                 }
                 self.about = Some(OpenSessionInfo { begin_ns, end_s });
                 self.calibrations = calibrations;
                 self.devices = devices;
-                if self.wanted_s > end_s {
+                if let Some(signals) = &signals {
+                    signals_view::choose(signals, &mut self.panels.forces);
+                    self.show(end_s);
+                } else if self.wanted_s > end_s {
                     self.show(end_s);
                 }
+                self.signals = signals;
             }
             WorkerAnswer::Refused(why) => self.report.refused = Some(text::playback::refused(&why)),
             WorkerAnswer::Read(part) => self.overview.add(part),

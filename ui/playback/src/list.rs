@@ -9,7 +9,7 @@ use std::{
 use egui::{Button, CentralPanel, Context, Frame, Grid, Label, Margin, RichText, ScrollArea, TextEdit, Ui, vec2};
 use nima_screen::{
     opener,
-    picking::Picking,
+    picking::{Kind, Picking},
     theme,
     widgets::{Sign, sign_ui, small, weak},
 };
@@ -135,7 +135,7 @@ impl SessionList {
                     .on_hover_text(text::playback::ELSEWHERE_HOVER)
                     .clicked()
                 {
-                    let kind = [text::playback::SESSIONS.get(), "mcap"];
+                    let kind = Kind { name: text::playback::RECORDINGS.get(), endings: &["mcap", "csv", "txt", "tsv"] };
                     let folder = self.folder.as_deref();
                     self.picking = Some(Picking::open(ui.ctx(), text::playback::ELSEWHERE.get(), kind, folder));
                 }

@@ -12,8 +12,12 @@ use nima_machine::{
     rig::{DeviceName, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_recording::csv::Signals;
+use nima_recording::{
+    bag,
+    csv::{ColumnMapping, Signals, read_signals},
+};
 use nima_session::{
+    RecordingKind,
     file::{LogLine, RecordedFile},
     images,
     journal::JournalStart,
@@ -54,13 +58,20 @@ pub(super) enum PlaybackContents {
 }
 
 impl PlaybackFile {
-    /// Opens a session, or shows the signals that were read from another recording. Returns one line as error if it cannot
-    /// be shown at all.
+    /// Opens a session, or shows the signals of another program's recording: these, or those that have the usual names.
+    /// Returns one line as error if it cannot be shown at all.
     pub(super) fn open(path: &Path, signals: Option<Arc<Signals>>) -> Result<Self, String> {
-        match signals {
-            Some(signals) => Self::of_signals(path, signals).map_err(|error| quoted(&chain(&error))),
-            None => Self::of_session(path),
+        let of_signals = |signals| Self::of_signals(path, signals).map_err(|error| quoted(&chain(&error)));
+        if let Some(signals) = signals {
+            return of_signals(signals);
         }
+        let usual = ColumnMapping::default();
+        let signals = match RecordingKind::of(path, false).map_err(|error| quoted(&chain(&error)))? {
+            RecordingKind::Session => return Self::of_session(path),
+            RecordingKind::Table => read_signals(path, &usual).map_err(|error| unnamed(&error))?,
+            RecordingKind::Bag => bag::read_signals(path, &usual).map_err(|error| unnamed(&error))?,
+        };
+        of_signals(Arc::new(signals))
     }
 
     fn of_session(path: &Path) -> Result<Self, String> {
@@ -105,7 +116,7 @@ impl PlaybackFile {
     }
 
     /// Returns the signals of another program's recording.
-    pub(super) fn signals(&self) -> Option<&Signals> {
+    pub(super) const fn signals(&self) -> Option<&Arc<Signals>> {
         match &self.contents {
             PlaybackContents::Session(_) => None,
             PlaybackContents::Signals(signals) => Some(signals),
@@ -159,6 +170,11 @@ impl PlaybackFile {
         let mut control = Loop::new(&self.rig, &known).map_err(|error| quoted(&chain(&error)))?;
         Ok(control.step([None; SIDES], &Timing::default()).1)
     }
+}
+
+/// Returns why a recording is not shown, with the command that selects its signals.
+fn unnamed(error: &dyn std::error::Error) -> String {
+    text::playback::unnamed(&quoted(&chain(error)))
 }
 
 /// Returns a settings table of a session from its file.

@@ -48,6 +48,8 @@ pub(super) struct SessionOverview {
     pub(super) devices: Vec<DeviceName>,
     /// The endoscope whose images are in it.
     pub(super) endoscope: Option<EndoscopeConfig>,
+    /// Of another program's recording.
+    pub(super) signals: Option<Arc<Signals>>,
 }
 
 /// Extent of the replay of a moment.
@@ -151,6 +153,7 @@ fn run(
         calibrations: file.calibrations(),
         devices: file.devices(),
         endoscope: file.endoscope(),
+        signals: file.signals().cloned(),
     };
     sender.notify(WorkerAnswer::Opened(Box::new(opened)));
     let mut reading = FirstReading {

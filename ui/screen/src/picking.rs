@@ -8,8 +8,12 @@ use std::{
 
 use egui::Context;
 
-/// Description and ending of the files to choose from.
-pub type Kind = [&'static str; 2];
+/// Description and endings of the files to choose from.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    pub name: &'static str,
+    pub endings: &'static [&'static str],
+}
 
 /// A dialog that is open.
 #[derive(Debug)]
@@ -18,8 +22,7 @@ pub struct Picking(Receiver<PathBuf>);
 impl Picking {
     /// Opens the dialog in this folder on its own thread, because it waits for the user.
     pub fn open(ctx: &Context, title: &str, kind: Kind, folder: Option<&Path>) -> Self {
-        let [name, ending] = kind;
-        let mut dialog = rfd::FileDialog::new().set_title(title).add_filter(name, &[ending]);
+        let mut dialog = rfd::FileDialog::new().set_title(title).add_filter(kind.name, kind.endings);
         if let Some(folder) = folder {
             dialog = dialog.set_directory(folder);
         }

@@ -68,3 +68,20 @@ fn a_slow_recording_is_one_line_and_its_pause_a_gap() {
     past.live.as_ref().unwrap().history[0].trace(11, (0.0, 13.0), 0.0, 10_000, &mut line);
     assert_eq!(line.runs().count(), 2);
 }
+
+#[test]
+fn a_recording_that_is_opened_in_the_window_is_recognized_by_its_contents() {
+    let folder = tempfile::tempdir().unwrap();
+    let [table, other] = ["table.csv", "other.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&table, "t_s,fx_n\n0,1\n0.5,2\n1,3\n").unwrap();
+    let mut past = open(&table);
+    until(&mut past, "at its end", |past| past.live.is_some() && (past.shown_s() - 1.0).abs() < 1e-9);
+    assert!(past.is_foreign() && past.refused().is_none());
+    assert_eq!(known(past.live.as_ref().unwrap().ticks[0].unwrap().measured_n.as_slice()), [Some(3.0), None, None]);
+
+    std::fs::write(&other, "t_s,load\n0,1\n0.5,2\n1,3\n").unwrap();
+    let mut past = open(&other);
+    until(&mut past, "refused", |past| past.refused().is_some());
+    let why = past.refused().unwrap();
+    assert!(why.contains("load") && why.contains("nima view FILE --map"), "{why}");
+}

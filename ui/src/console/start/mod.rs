@@ -15,7 +15,7 @@ use nima_machine::{config::RigConfig, messages::LoopState};
 use nima_panels::rig_choice::RigChoice;
 use nima_screen::{
     live::LiveState,
-    picking::Picking,
+    picking::{Kind, Picking},
     theme,
     widgets::{card, next_button, small, weak},
 };
@@ -165,7 +165,7 @@ impl StartPage {
         let button = Button::new(text::start::ELSEWHERE);
         let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
         if button.on_hover_text(text::start::ELSEWHERE_HOVER).clicked() {
-            let kind = [text::start::RIG_FILES.get(), "toml"];
+            let kind = Kind { name: text::start::RIG_FILES.get(), endings: &["toml"] };
             let folder = self.folder.as_deref();
             self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
         }

@@ -15,6 +15,7 @@ use nima_recording::store::utc_of;
 use crate::language::{Text, text_format, word};
 use crate::report_text::{device_name, loss_text};
 
+pub const RECORDINGS: Text = Text::of("Recordings", "Aufzeichnungen");
 pub const SESSIONS: Text = Text::of("Sessions", "Sitzungen");
 pub const SESSIONS_HOVER: Text = Text::of(
     "Recorded sessions: play, keep, report or delete them. F7",
@@ -68,8 +69,8 @@ pub const OPEN_FOLDER: Text = Text::of("Open folder", "Ordner öffnen");
 pub const BACK: Text = Text::of("Back to the view", "Zurück zur Ansicht");
 pub const ELSEWHERE: Text = Text::of("Open file…", "Datei öffnen…");
 pub const ELSEWHERE_HOVER: Text = Text::of(
-    "Opens a session from any folder; the list has only those in yours",
-    "Öffnet eine Sitzung aus einem beliebigen Ordner; die Liste enthält nur die in Ihrem",
+    "Opens a session, or the forces and positions of another program's recording (CSV, MCAP), from any folder; the list has only your sessions",
+    "Öffnet eine Sitzung oder Kräfte und Positionen einer Aufzeichnung eines anderen Programms (CSV, MCAP) aus einem beliebigen Ordner; die Liste enthält nur Ihre Sitzungen",
 );
 pub const REPORTING: Text = Text::of("Writing the report", "Bericht wird geschrieben");
 pub const CUTTING: Text = Text::of("Saving the excerpt", "Ausschnitt wird gespeichert");
@@ -249,7 +250,15 @@ pub fn lacks(line: &str) -> String {
 }
 
 pub fn refused(why: &str) -> String {
-    text_format!("This session cannot be shown: {why}", "Diese Sitzung ist nicht darstellbar: {why}")
+    text_format!("This recording cannot be shown: {why}", "Diese Aufzeichnung ist nicht darstellbar: {why}")
+}
+
+/// Why another program's recording is not shown with the usual names.
+pub fn unnamed(why: &str) -> String {
+    text_format!(
+        "{why}. To select its signals, start it with `nima view FILE --map NAME=COLUMN`",
+        "{why}. Um seine Signale zu wählen, mit `nima view DATEI --map NAME=SPALTE` starten"
+    )
 }
 
 pub fn hole(lost: u64) -> String {

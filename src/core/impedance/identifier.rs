@@ -143,10 +143,7 @@ impl Identifier {
         self.report.resting = !learn;
         self.report.learnt += u64::from(learn && good);
 
-        self.parcel.t_s = self.last_t_s;
-        self.parcel.force_n = self.last_force_n.vector();
-        self.parcel.fresh = good;
-        self.parcel.resting = !learn;
+        self.begin_packet(good, learn);
         let seen = MethodInput {
             posture: &now,
             x: &x,
@@ -162,6 +159,14 @@ impl Identifier {
         }
         self.sent.push((self.parcel, now));
         self.predict(&now, &x, good);
+    }
+
+    /// Writes the sample into the packet, to which the methods then add their parts.
+    fn begin_packet(&mut self, good: bool, learn: bool) {
+        self.parcel.t_s = self.last_t_s;
+        self.parcel.force_n = self.last_force_n.vector();
+        self.parcel.fresh = good;
+        self.parcel.resting = !learn;
     }
 
     /// Returns whether the samples are uninformative: no force was measured or rendered for the length of a window.

@@ -1,5 +1,7 @@
 //! Converts the orientation of the instrument's jaws to servo angles and back, with a PID controller around each servo.
 
+use std::ops::RangeInclusive;
+
 use nalgebra::UnitQuaternion;
 use nima_core::{
     kinematics::WristJaws,
@@ -29,16 +31,34 @@ impl Default for JawsSettings {
     }
 }
 
+/// Far outside the gears of any wrist: only a wrong unit or a slip of the pen lies beyond.
+const RATIO: RangeInclusive<f64> = 0.01..=100.0;
+const GRIP_MAX: RangeInclusive<f64> = 0.0..=100.0;
+
 impl JawsSettings {
-    /// Refuses grip force from a servo that does not measure its current.
+    /// Refuses values without physical sense, and grip force from a servo that does not measure its current.
     pub(super) fn check(&self, servos: Option<&DynamixelSettings>) -> Result<(), DeviceError> {
+        let refused = |key: &str, value: String, allowed: &str| {
+            Err(DeviceError::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
+        };
+        let Self { ratio, grip_per_gripper, grip_n_per_a, pid } = self;
+        if !ratio.iter().all(|one| RATIO.contains(&one.abs())) {
+            return refused("ratio", format!("{ratio:?}"), "a number from 0.01 to 100, or the same below zero");
+        }
+        if !GRIP_MAX.contains(grip_per_gripper) {
+            return refused("grip_per_gripper", grip_per_gripper.to_string(), "0 to 100");
+        }
+        if !GRIP_MAX.contains(grip_n_per_a) {
+            return refused("grip_n_per_a", grip_n_per_a.to_string(), "0 to 100 N/A");
+        }
+        let PidGains { proportional, integral_per_s, derivative_s, integral_max } = *pid;
+        if ![proportional, integral_per_s, derivative_s, integral_max].iter().all(|gain| GRIP_MAX.contains(gain)) {
+            return refused("pid", format!("{pid:?}"), "gains from 0 to 100");
+        }
         let Some(closing) = servos.map(|servos| &servos.servos[SERVOS - 1]) else { return Ok(()) };
-        if self.grip_n_per_a > 0.0 && closing.current_limit_a <= 0.0 {
-            return Err(DeviceError::Setting {
-                key: "grip_n_per_a".to_owned(),
-                value: self.grip_n_per_a.to_string(),
-                allowed: "0 for a closing servo that does not measure its current (without current_limit_a)".to_owned(),
-            });
+        if *grip_n_per_a > 0.0 && closing.current_limit_a <= 0.0 {
+            let allowed = "0 for a closing servo that does not measure its current (without current_limit_a)";
+            return refused("grip_n_per_a", grip_n_per_a.to_string(), allowed);
         }
         Ok(())
     }
@@ -131,5 +151,24 @@ mod tests {
         let source = std::error::Error::source(&rig.validate().unwrap_err()).map(ToString::to_string);
         let words = format!("{refused} {}", source.unwrap_or_default());
         assert!(words.contains("devices.right.jaws.grip_n_per_a"), "{words}");
+    }
+
+    #[test]
+    fn values_without_physical_sense_are_refused() {
+        let usual = JawsSettings::default();
+        assert!(usual.check(None).is_ok());
+        let negative = JawsSettings { ratio: [-2.0, 1.0, 1.0, 1.0], ..usual };
+        assert!(negative.check(None).is_ok(), "a ratio may turn the other way");
+        let pid = PidGains { integral_per_s: -1.0, ..usual.pid };
+        for (settings, key) in [
+            (JawsSettings { ratio: [1.0, 0.0, 1.0, 1.0], ..usual }, "ratio"),
+            (JawsSettings { ratio: [f64::NAN, 1.0, 1.0, 1.0], ..usual }, "ratio"),
+            (JawsSettings { grip_per_gripper: -1.0, ..usual }, "grip_per_gripper"),
+            (JawsSettings { grip_n_per_a: 1e4, ..usual }, "grip_n_per_a"),
+            (JawsSettings { pid, ..usual }, "pid"),
+        ] {
+            let words = settings.check(None).unwrap_err().to_string();
+            assert!(words.starts_with(key), "{words}");
+        }
     }
 }

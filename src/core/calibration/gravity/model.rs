@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::plausible::{LEVER_MAX_M, MASS_MAX_KG};
 use crate::frames::{GRAVITY_M_S2, Wrench, WristSample};
 
 /// If the accelerometer measures less than this, m/s^2, it is defective or the arm is in free fall, and the orientation
@@ -105,7 +106,9 @@ impl GravityModel {
         let (all_finite, plausible) = match &self.parameters {
             GravityParameters::Physical { mass_kg, s1_from_source_wxyz, bias_n, torque } => (
                 finite(&[*mass_kg]) && finite(s1_from_source_wxyz) && finite(bias_n) && torque_fits(torque),
-                *mass_kg >= 0.0 && (SVector::from(*s1_from_source_wxyz).norm() - 1.0).abs() < 1e-6,
+                (0.0..=MASS_MAX_KG).contains(mass_kg)
+                    && torque.is_none_or(|torque| SVector::from(torque.com_m).norm() <= LEVER_MAX_M)
+                    && (SVector::from(*s1_from_source_wxyz).norm() - 1.0).abs() < 1e-6,
             ),
             GravityParameters::Gain { gain_kg, bias_n, torque } => {
                 (finite(gain_kg.as_flattened()) && finite(bias_n) && torque_fits(torque), true)
@@ -116,7 +119,9 @@ impl GravityModel {
         };
         match (self.imu_sign, all_finite, plausible) {
             (-1 | 1, true, true) => None,
-            (-1 | 1, true, false) => Some("the mass is negative or the rotation is not a unit quaternion"),
+            (-1 | 1, true, false) => Some(
+                "the mass is not within 0 to 10 kg, the centre of mass is more than 0.5 m from the sensor, or the rotation is not a unit quaternion",
+            ),
             (-1 | 1, false, _) => Some("a number of the gravity model is not finite"),
             _ => Some("imu_sign is neither 1 nor -1"),
         }

@@ -4,9 +4,9 @@ use super::GravityReport;
 use crate::units;
 
 /// Maximum mass of a tool, kg: more than the payload of any arm that carries a laparoscopic instrument.
-const MASS_MAX_KG: f64 = 10.0;
+pub(super) const MASS_MAX_KG: f64 = 10.0;
 /// Maximum distance of the tool's centre of mass from the sensor, m: the middle of the longest shaft.
-const LEVER_MAX_M: f64 = 0.5;
+pub(super) const LEVER_MAX_M: f64 = 0.5;
 /// Usual distances of a centre of mass, m; they reveal a wrong unit.
 const LEVER_USUAL_M: std::ops::Range<f64> = 0.005..0.3;
 /// Maximum deviation of the fitted mass from the weighed one, as a fraction of it.
@@ -50,7 +50,10 @@ fn unit_remedy(unit: Option<&str>) -> String {
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
-    use super::super::{GravityPose, GravityReport, GravitySettings, Orientation, fit};
+    use super::super::{
+        GravityModel, GravityParameters, GravityPose, GravityReport, GravitySettings, Orientation, TorqueParameters,
+        fit,
+    };
     use crate::{calibration::Verdict, frames::Wrench};
 
     /// Fits a tool of 0.25 kg with its centre of mass at 60 mm, whose force and torque are given in other units.
@@ -65,6 +68,21 @@ mod tests {
         };
         let poses: Vec<GravityPose> = (0..14).map(pose).collect();
         fit(&poses, &GravitySettings { weighed_kg, ..GravitySettings::default() }).unwrap()
+    }
+
+    #[test]
+    fn a_model_in_grams_or_millimetres_is_refused() {
+        let model = fitted(1.0, 1.0, None).chosen_fit().unwrap().model;
+        assert_eq!(model.fault(), None);
+        let GravityParameters::Physical { mass_kg, s1_from_source_wxyz, bias_n, torque } = model.parameters else {
+            panic!("{model:?}")
+        };
+        let com_m = torque.unwrap().com_m.map(|axis| axis * 1e3);
+        let torque_mm = torque.map(|torque| TorqueParameters { com_m, ..torque });
+        for (mass_kg, torque) in [(mass_kg * 1e3, torque), (mass_kg, torque_mm)] {
+            let parameters = GravityParameters::Physical { mass_kg, s1_from_source_wxyz, bias_n, torque };
+            assert!(GravityModel { parameters, ..model }.fault().unwrap().contains("within 0 to 10 kg"));
+        }
     }
 
     #[test]

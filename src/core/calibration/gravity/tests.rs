@@ -332,7 +332,7 @@ fn a_record_reads_back_and_one_that_cannot_be_used_is_refused() {
         assert!(text.contains(from), "{text}");
         toml::from_str::<GravityRecord>(&text.replace(from, to)).unwrap_err().to_string()
     };
-    assert!(refused("mass_kg = 0.", "mass_kg = -0.").contains("mass is negative"));
+    assert!(refused("mass_kg = 0.", "mass_kg = -0.").contains("mass is not within"));
     assert!(refused("imu_sign = 1", "imu_sign = 3").contains("imu_sign"));
     assert!(refused("kind = \"gravity\"", "kind = \"cheese\"").contains("cheese"));
     assert!(refused("coverage", "covfefe").contains("coverage"));

@@ -50,7 +50,24 @@ impl WhatIfChange {
             Command::SetMode(_) => self.mode.is_none(),
             Command::SetDelay(_) => self.delay_s.is_none(),
             Command::SetGain(_) | Command::SetGainAboveOne(_) => self.gain.is_none(),
-            _ => true,
+            Command::Compare(_)
+            | Command::SetDeadBand(_)
+            | Command::SetStaticHold(_)
+            | Command::Prompt(..)
+            | Command::Guide(..)
+            | Command::Grip(..)
+            | Command::Task(..)
+            | Command::LetGo(_)
+            | Command::SetGovernor(_)
+            | Command::SetScale(_)
+            | Command::Engage
+            | Command::EngageOne(_)
+            | Command::Rest
+            | Command::Stop
+            | Command::ReleaseStop
+            | Command::TestWatchdog(_)
+            | Command::Checked(_)
+            | Command::Shutdown => true,
         }
     }
 }

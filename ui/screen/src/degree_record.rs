@@ -87,7 +87,7 @@ pub fn chosen_degree(tick: &Tick) -> u8 {
     let report = &tick.identification;
     match tick.mode {
         mode @ (Mode::Matched | Mode::Nima | Mode::Best) => report.degree_of(mode),
-        _ => report.degrees.anchored,
+        Mode::Literal | Mode::Linear | Mode::Dfr | Mode::Anchored | Mode::Baseline(_) => report.degrees.anchored,
     }
 }
 

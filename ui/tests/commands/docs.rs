@@ -9,7 +9,7 @@ use std::{
 
 use nima_core::{
     impedance::Mode,
-    limits::{GAIN, GAIN_ABOVE_ONE, USUAL_CEILING_N},
+    limits::{GAIN, GAIN_ABOVE_ONE, SLIDER_DELAY_S, USUAL_CEILING_N},
     safety::{ChainSettings, Gate, PLAUSIBLE_N},
 };
 
@@ -201,5 +201,6 @@ fn the_pages_have_the_limits_of_the_gates() {
         let row = glossary.lines().find(|line| line.starts_with(&format!("| `{}` |", gate.name()))).unwrap();
         assert!(row.contains(&figure), "{figure} is not in: {row}");
     }
+    assert!(page("docs/panels.md").contains(&format!("one-way delay of {}", SLIDER_DELAY_S.per(1e-3, "ms"))));
     assert!(page("docs/faults.md").contains(&format!("the ceiling ({USUAL_CEILING_N} N by default)")));
 }

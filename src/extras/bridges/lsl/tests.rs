@@ -1,7 +1,4 @@
-//! Tests of the markers of a loop, without the library, and with it where it is installed (`NIMA_LIBLSL` names its
-//! file).
-
-use std::path::Path;
+//! Tests of the markers of a loop, without the library; `tests/peers/peer_lsl.py` tests them with it.
 
 use nalgebra::Vector3;
 use nima_core::safety::InterlockState;
@@ -121,18 +118,4 @@ fn a_library_that_is_missing_or_none_is_told_with_its_cure_in_one_line() {
         assert_eq!(error.lines().count(), 1);
     }
     std::fs::remove_dir_all(folder).unwrap();
-}
-
-/// The peer that reads the stream is `tests/peers/peer_lsl.py`; this tests only the library.
-#[test]
-fn the_installed_library_takes_the_marks_of_a_trial() {
-    let Some(path) = std::env::var_os("NIMA_LIBLSL") else { return };
-    let marker = MarkStream::start(Some(Path::new(&path)), "test", "here").unwrap();
-    let about = MarkContext { contact_n: CONTACT_N, trial: Some("P03 4".to_owned()), words: WORDS };
-    let mut audience = marker.audience(about);
-    for (tick, shown) in ticks().iter().enumerate() {
-        audience.tick(tick as f64 * 1e-3, shown, &[]);
-    }
-    drop(audience);
-    assert_eq!((marker.dropped(), marker.is_received()), (0, false));
 }

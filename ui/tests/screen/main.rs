@@ -19,6 +19,7 @@ mod instruments;
 mod language;
 mod looks;
 mod monitor;
+mod other_arm;
 mod pages;
 mod palette;
 mod playback;

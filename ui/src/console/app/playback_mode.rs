@@ -4,7 +4,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use egui::{CentralPanel, Stroke, StrokeKind, Ui};
+use egui::{CentralPanel, Frame, Margin, Stroke, StrokeKind, Ui};
 use nima_panels::roles::role_ui;
 use nima_playback::{FRAME, Playback, bar_ui, both_ui, head_ui, list::SessionListChoice, signals_ui};
 use nima_recording::csv::Signals;
@@ -125,7 +125,8 @@ impl ConsoleApp {
             }
             let Some(live) = &mut past.live else {
                 let words = past.refused().unwrap_or(text::playback::OPENING.get());
-                ui.centered_and_justified(|ui| ui.label(weak(words)));
+                let frame = Frame::new().inner_margin(Margin::symmetric(24, 0));
+                frame.show(ui, |ui| ui.centered_and_justified(|ui| ui.label(weak(words))));
                 return;
             };
             live.rough_edges = self.live.rough_edges;

@@ -70,6 +70,8 @@ pub struct Playback {
     extent: WorkerExtent,
     /// Requested time on the screen, s.
     wanted_s: f64,
+    /// No time was requested since it was opened.
+    is_unasked: bool,
     play: Play,
     stretch_s: [Option<f64>; 2],
     /// Another session on the same clock: equal times since the start of each.
@@ -150,6 +152,7 @@ impl Playback {
             devices: Vec::new(),
             extent: WorkerExtent::Plotted,
             wanted_s: 0.0,
+            is_unasked: true,
             play: Play { runs: false, speed: 1.0, unsettled_s: 0.0 },
             stretch_s: [None; 2],
             beside: None,
@@ -232,8 +235,8 @@ impl Playback {
                 self.devices = devices;
                 if let Some(signals) = &signals {
                     signals_view::choose(signals, &mut self.panels.forces);
-                    self.show(end_s);
-                } else if self.wanted_s > end_s {
+                }
+                if (signals.is_some() && self.is_unasked) || self.wanted_s > end_s {
                     self.show(end_s);
                 }
                 self.signals = signals;
@@ -268,6 +271,7 @@ impl Playback {
     pub fn show(&mut self, t_s: f64) {
         let end_s = self.about.map_or(f64::INFINITY, |about| about.end_s);
         self.play.runs = false;
+        self.is_unasked = false;
         self.wanted_s = t_s.clamp(0.0, end_s);
         // Until the worker answers, the screen shows another moment.
         self.extent = WorkerExtent::Plotted;

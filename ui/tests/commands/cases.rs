@@ -36,7 +36,7 @@ fn tables_in_other_dialects_are_read_or_refused_with_what_is_wrong() {
         ("clock_step_back.csv", "line 202: the time steps back by 0.999 s"),
         ("dup_small.csv", "two columns have the name \"x_m\" (columns 2 and 3)"),
     ] {
-        let Some(table) = case(file) else { return };
+        let Some(table) = case(file) else { continue };
         let (succeeded, words) = tried(&["identify", &table]);
         assert!(!succeeded && words.contains(right) && !words.contains("sort"), "{file}: {words}");
     }

@@ -79,6 +79,11 @@ fn a_recording_that_is_opened_in_the_window_is_recognized_by_its_contents() {
     assert!(past.is_foreign() && past.refused().is_none());
     assert_eq!(known(past.live.as_ref().unwrap().ticks[0].unwrap().measured_n.as_slice()), [Some(3.0), None, None]);
 
+    let mut beside = open(&table);
+    beside.show(0.5);
+    until(&mut beside, "at the time of a comparison", |past| past.live.is_some() && past.is_foreign());
+    until(&mut beside, "still there", |past| (past.shown_s() - 0.5).abs() < 1e-9);
+
     std::fs::write(&other, "t_s,load\n0,1\n0.5,2\n1,3\n").unwrap();
     let mut past = open(&other);
     until(&mut past, "refused", |past| past.refused().is_some());

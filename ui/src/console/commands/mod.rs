@@ -1,7 +1,7 @@
 //! The table of the window's commands: menus, keys, the list of keys, the palette and `docs/reference/commands.md` are generated from it.
 //!
 //! Name, keys, place and meaning of a command are defined here; its availability and its effect are defined once each, for
-//! all callers, in `app/reaching.rs` and `app/acting.rs`.
+//! all callers, in `app/availability.rs` and `app/dispatch.rs`.
 
 mod keys;
 mod table;

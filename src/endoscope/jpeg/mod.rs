@@ -1,17 +1,16 @@
 //! JPEGs: decoded for the screen, found in a file, and encoded for emulators.
 
-mod encode;
 mod split;
 
 use std::borrow::Cow;
 
+use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use zune_jpeg::{
     JpegDecoder,
     errors::DecodeErrors,
     zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions},
 };
 
-pub use encode::{JpegEncoder, encode};
 pub(crate) use split::JpegSplitter;
 
 /// Maximum side of an image, and maximum number of pixels: somewhat more than 4096 x 2160. A larger image is refused
@@ -117,6 +116,21 @@ pub fn decode(jpeg: &[u8]) -> Result<DecodedImage, Damage> {
     Ok(DecodedImage { size_px, rgba })
 }
 
+/// Encodes an image with three bytes per pixel, row by row, at a quality of 1 to 100, with colours at half the resolution
+/// (4:2:0) as sent by cameras: for emulators and tests.
+///
+/// # Panics
+/// If there are fewer bytes than pixels, or a side is 0 or above 65535.
+pub fn encode(rgb: &[u8], size_px: [usize; 2], quality: u8) -> Vec<u8> {
+    let mut jpeg = Vec::new();
+    let mut encoder = Encoder::new(&mut jpeg, quality);
+    encoder.set_sampling_factor(SamplingFactor::F_2_2);
+    let [width, height] = size_px.map(|side| u16::try_from(side).unwrap_or(0));
+    let done = encoder.encode(rgb, width, height, ColorType::Rgb);
+    assert!(done.is_ok(), "{} bytes for {size_px:?}: {done:?}", rgb.len());
+    jpeg
+}
+
 /// Adds the standard Huffman tables, which many USB cameras omit.
 fn completed(jpeg: &[u8]) -> Cow<'_, [u8]> {
     let mut at = 2;
@@ -170,6 +184,45 @@ pub(crate) mod tests {
             }
         };
         (0..size_px[1]).flat_map(|y| (0..size_px[0]).flat_map(move |x| value(x, y))).collect()
+    }
+
+    #[test]
+    fn what_is_decoded_is_what_was_encoded() {
+        // Including sides that are not multiples of a block.
+        for size_px in [[64, 48], [640, 361], [17, 9], [1, 1]] {
+            // No fine colours: they have half the resolution.
+            let grey: Vec<u8> =
+                pattern(size_px).chunks_exact(3).flat_map(|pixel| [pixel[0] / 2 + pixel[1] / 4; 3]).collect();
+            let image = decode(&encode(&grey, size_px, 92)).unwrap();
+            assert_eq!(image.size_px, size_px);
+            let pairs = image.rgba.chunks_exact(4).zip(grey.chunks_exact(3));
+            let misses = pairs.flat_map(|(is, was)| (0..3).map(|i| f64::from(is[i].abs_diff(was[i]))));
+            let (sum, count) = misses.fold((0.0, 0.0), |(sum, count), miss| (sum + miss * miss, count + 1.0));
+            let rms = f64::sqrt(sum / count);
+            assert!(rms < 4.0, "{size_px:?}: {rms}");
+        }
+    }
+
+    #[test]
+    fn test_bars_keep_their_colours_within_two_of_255() {
+        let bars = [
+            [255, 255, 255],
+            [191, 191, 0],
+            [0, 191, 191],
+            [0, 191, 0],
+            [191, 0, 191],
+            [191, 0, 0],
+            [0, 0, 191],
+            [16; 3],
+        ];
+        let rgb: Vec<u8> = (0..64 * 512).flat_map(|at| bars[at % 512 / 64]).collect();
+        let image = decode(&encode(&rgb, [512, 64], 95)).unwrap();
+        for (number, bar) in bars.iter().enumerate() {
+            let at = 4 * (32 * 512 + 64 * number + 32);
+            for (is, was) in image.rgba[at..at + 3].iter().zip(bar) {
+                assert!(is.abs_diff(*was) <= 2, "bar {number}: {:?} for {bar:?}", &image.rgba[at..at + 3]);
+            }
+        }
     }
 
     #[test]

@@ -110,13 +110,12 @@ struct RenderState {
 /// Encoders for all clients; each is created for its first client.
 struct Coders {
     quality: u8,
-    jpeg: Option<([usize; 2], jpeg::JpegEncoder)>,
     h264: Option<h264::H264Encoder>,
 }
 
 impl RenderState {
     fn new(emulated: EmulatedEndoscope, subject: &ShotSubject, pipe: Option<Pipe>) -> Self {
-        let coders = Coders { quality: emulated.quality, jpeg: None, h264: None };
+        let coders = Coders { quality: emulated.quality, h264: None };
         Self { rate_hz: emulated.rate_hz, studio: SceneRenderer::new(emulated, subject), pipe, coders }
     }
 
@@ -142,11 +141,11 @@ impl RenderState {
 }
 
 impl Coders {
-    fn part(&mut self, shot: &Shot<'_>, since: Duration, fault: EmulatedFault) -> Vec<u8> {
+    fn part(&self, shot: &Shot<'_>, since: Duration, fault: EmulatedFault) -> Vec<u8> {
         let (kind, mut image) = if fault == EmulatedFault::OtherFormat {
             ("image/png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec())
         } else {
-            ("image/jpeg", self.jpeg(shot))
+            ("image/jpeg", jpeg::encode(shot.rgb, shot.size_px, self.quality))
         };
         if fault == EmulatedFault::Torn {
             image.truncate(image.len() * 6 / 10);
@@ -158,13 +157,6 @@ impl Coders {
             since.subsec_micros()
         );
         [head.as_bytes(), &image].concat()
-    }
-
-    fn jpeg(&mut self, shot: &Shot<'_>) -> Vec<u8> {
-        if self.jpeg.as_ref().is_none_or(|(size_px, _)| *size_px != shot.size_px) {
-            self.jpeg = Some((shot.size_px, jpeg::JpegEncoder::new(shot.size_px, self.quality)));
-        }
-        self.jpeg.as_mut().map(|(_, encoder)| encoder.encode(shot.rgb)).unwrap_or_default()
     }
 
     fn unit(&mut self, shot: &Shot<'_>, key: bool, rate_hz: f64) -> io::Result<Vec<u8>> {

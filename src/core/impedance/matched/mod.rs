@@ -70,8 +70,7 @@ struct Learner {
     form: ModelForm,
     rate_hz: f64,
     delay_ticks: usize,
-    every: usize,
-    tick: usize,
+    renewals: RenewalSchedule,
     one: Lanes,
     sums: Vec<MatchedSums>,
     experts: Vec<Expert>,
@@ -87,6 +86,32 @@ struct Learner {
     model: MatchedModel,
     /// `None` for the paper's form, and in the replay of a session that was recorded without it.
     change: Option<ChangeDetector>,
+}
+
+/// Spreads the renewals of the experts over the ticks: one ridge after another.
+#[derive(Clone, Copy, Debug)]
+struct RenewalSchedule {
+    /// Number of ticks from one renewal of an expert to its next.
+    every: usize,
+    tick: usize,
+    ridges: usize,
+}
+
+impl RenewalSchedule {
+    fn phase(&self, ridge: usize) -> usize {
+        ridge * self.every / self.ridges
+    }
+
+    /// Returns whether this is the tick of this ridge.
+    fn is_turn_of(&self, ridge: usize) -> bool {
+        self.tick % self.every == self.phase(ridge)
+    }
+
+    /// Returns how many renewals ago the parameters that were active `ticks` ago were found.
+    fn since(&self, ridge: usize, ticks: usize) -> usize {
+        let ahead = self.every - self.phase(ridge);
+        (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
+    }
 }
 
 #[derive(Debug)]
@@ -146,8 +171,7 @@ impl Learner {
             form,
             rate_hz,
             delay_ticks,
-            every,
-            tick: 0,
+            renewals: RenewalSchedule { every, tick: 0, ridges: ridges_of(form).len() },
             one: super::messages::active(&nalgebra::Vector3::repeat(1.0), settings.axes),
             sums,
             experts: experts.collect(),
@@ -192,7 +216,7 @@ impl Learner {
         } else {
             self.drift.hold();
         }
-        self.tick += 1;
+        self.renewals.tick += 1;
         &self.model
     }
 
@@ -211,17 +235,13 @@ impl Learner {
     fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
         // Also while resting one entry per renewal is stored, so that an index stays a time.
-        let phase = self.tick % self.every;
-        for ridge in 0..ridges_of(self.form).len() {
-            if phase != self.phase(ridge) {
-                continue;
-            }
+        for ridge in (0..self.renewals.ridges).filter(|ridge| self.renewals.is_turn_of(*ridge)) {
             for expert in self.experts.iter_mut().filter(|expert| expert.ridge == ridge) {
                 expert.past.push(expert.parameters);
             }
         }
         self.drift.hold();
-        self.tick += 1;
+        self.renewals.tick += 1;
     }
 
     fn learn(&mut self, posture: &Posture, force_n: Lanes) {
@@ -232,7 +252,7 @@ impl Learner {
         let row = self.form.row(posture, self.one, origin, &held);
         // A long memory loses nothing by adding only one sample per renewal.
         // The short memory is the first one.
-        let memories = if self.tick.is_multiple_of(self.every) { self.sums.len() } else { 1 };
+        let memories = if self.renewals.is_turn_of(0) { self.sums.len() } else { 1 };
         for (memory, sums) in self.sums.iter_mut().enumerate().take(memories) {
             let full = self.experts.iter().rfind(|expert| ridges_of(self.form)[expert.ridge].memory == memory);
             // The largest model of this memory weighs the samples: its error is the least biased.
@@ -245,15 +265,15 @@ impl Learner {
 
     /// Computes one factorisation per ridge, spread over the ticks between two renewals.
     fn solve(&mut self) {
-        let phase = self.tick % self.every;
+        let RenewalSchedule { tick, every, .. } = self.renewals;
         for (ridge, Ridge { s, memory }) in ridges_of(self.form).iter().enumerate() {
             // On the first tick solve all of them, because an expert without a prediction cannot be evaluated.
-            if phase != self.phase(ridge) && self.tick > 0 {
+            if !self.renewals.is_turn_of(ridge) && tick > 0 {
                 continue;
             }
             let sums = &mut self.sums[*memory];
             // A long memory changes slowly, so it is renewed less often.
-            let renew = *memory == 0 || (self.tick / self.every).is_multiple_of(LONG_RENEWALS);
+            let renew = *memory == 0 || (tick / every).is_multiple_of(LONG_RENEWALS);
             if renew {
                 sums.factorise(*s);
             }
@@ -267,16 +287,6 @@ impl Learner {
         }
     }
 
-    fn phase(&self, ridge: usize) -> usize {
-        ridge * self.every / ridges_of(self.form).len()
-    }
-
-    /// Returns how many renewals ago the parameters that were active `ticks` ago were found.
-    fn renewals(&self, ridge: usize, ticks: usize) -> usize {
-        let ahead = self.every - self.phase(ridge);
-        (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
-    }
-
     fn judge(&mut self, posture: &Posture, force_n: Lanes, sent: &MatchedModel, (row, said_n): &(FormRow, Lanes)) {
         let pace = posture.stance.pace;
         self.judged += pace;
@@ -284,8 +294,8 @@ impl Learner {
         let mut min_n = Lanes::splat(f64::INFINITY);
         let horizon = self.horizon();
         let mut ages = [0; RIDGES.len()];
-        for (ridge, age) in ages.iter_mut().enumerate().take(ridges_of(self.form).len()) {
-            *age = self.renewals(ridge, horizon);
+        for (ridge, age) in ages.iter_mut().enumerate().take(self.renewals.ridges) {
+            *age = self.renewals.since(ridge, horizon);
         }
         for expert in &mut self.experts {
             let age = ages[expert.ridge];
@@ -373,7 +383,7 @@ impl FollowerEnd for Learner {
     }
 
     fn reset(&mut self) {
-        self.tick = 0;
+        self.renewals.tick = 0;
         self.sums.iter_mut().for_each(MatchedSums::reset);
         // Equal weights: before the first error no expert is known to be better.
         let weight = self.one * (1.0 / self.experts.len() as f64);

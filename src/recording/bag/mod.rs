@@ -23,6 +23,9 @@ use codec::{BagField, BagNumber, BagValue, examples};
 const CDR: &str = "cdr";
 /// Maximum time between two messages of a topic over which is interpolated, s: three messages of a slow tracker.
 const GAP_S: f64 = 0.1;
+/// Maximum time by which a message may come after a later one, s: several publishers of a topic overtake each other by
+/// the time of a message. A clock that is set steps further.
+const LATE_S: f64 = 0.02;
 /// Minimum number of samples.
 const MIN_SAMPLES: usize = 3;
 
@@ -199,17 +202,12 @@ fn read_series(
         let time_ns = stamp_ns.unwrap_or_else(|| message.log_time_ns());
         if let (Some(&first_ns), Some(&last_ns)) = (series.times_ns.first(), series.times_ns.last()) {
             let seconds = |from_ns: u64, to_ns: u64| to_ns.saturating_sub(from_ns) as f64 * 1e-9;
-            if time_ns < last_ns {
+            if seconds(time_ns, last_ns) > LATE_S {
                 let [after_s, back_s] = [seconds(first_ns, last_ns), seconds(time_ns, last_ns)];
                 return Err(BagError::ClockSet { path: path.to_owned(), topic: topic(), after_s, back_s });
             }
-            // The same message again.
-            if time_ns == last_ns {
-                continue;
-            }
         }
-        series.times_ns.push(time_ns);
-        series.values.push(value * source.scale());
+        series.add(time_ns, value * source.scale());
     }
     if has_messages && series.times_ns.is_empty() {
         return Err(missing());
@@ -218,6 +216,16 @@ fn read_series(
 }
 
 impl Series {
+    /// Adds a value in the order of time, unless it is the same message again.
+    fn add(&mut self, time_ns: u64, value: f64) {
+        let earlier = self.times_ns.iter().rev().take_while(|known| **known >= time_ns).count();
+        let at = self.times_ns.len() - earlier;
+        if self.times_ns.get(at) != Some(&time_ns) {
+            self.times_ns.insert(at, time_ns);
+            self.values.insert(at, value);
+        }
+    }
+
     /// Returns the value at a time, between two messages that are close enough; `None` if it is unknown.
     fn at(&self, time_ns: u64) -> Option<f64> {
         self.between(time_ns).filter(|value| value.is_finite())
@@ -380,6 +388,20 @@ mod tests {
         assert!(recording.samples.iter().all(|sample| sample.position_m.x.is_finite()));
         let none = read(&path, &mapping(&["z=/joint_states.position.knee", "fz=/ft/wrench.wrench.force.z"]));
         assert!(none.unwrap_err().to_string().contains("/joint_states.position.knee"));
+    }
+
+    #[test]
+    fn messages_that_overtake_each_other_are_read_in_the_order_of_their_times() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        joint_states(&path, |tick| (tick ^ 1) * 2_000_000);
+        let maps = mapping(&["z=/joint_states.position.elbow", "fz=/ft/wrench.wrench.force.z"]);
+        let looked = read_signals(&path, &maps).unwrap();
+        assert_eq!(looked.rows.len(), 100);
+        for (number, row) in looked.rows.iter().enumerate().filter(|(number, _)| number / 2 != 25) {
+            let written = [number as f64 * 0.002, (number ^ 1) as f64];
+            assert!((row.t_s - written[0]).abs() < 1e-9 && (row.position_m.z - written[1]).abs() < 1e-9, "{row:?}");
+        }
     }
 
     #[test]

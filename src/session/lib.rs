@@ -49,5 +49,5 @@ mod topics;
 pub mod trim;
 
 pub use logged::LogValue;
-pub use recording_kind::RecordingKind;
+pub use recording_kind::{OpenSignalsError, RecordingKind, open_signals};
 pub use topics::{STATES, SentenceChannel};

@@ -3,7 +3,8 @@
 use std::{fs::File, io::Read as _, path::Path};
 
 use nima_recording::{
-    bag,
+    bag::{self, BagError},
+    csv::{self, ColumnMapping, RecordingError, Signals},
     session::{ReadError, SessionReader},
 };
 
@@ -39,6 +40,44 @@ impl RecordingKind {
         let is_foreign = plot_channels::arms(&reader).is_empty() && (is_mapped || bag::is_bag(&reader));
         Ok(if is_foreign { Self::Bag } else { Self::Session })
     }
+}
+
+/// Why a recording is not shown.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenSignalsError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error(transparent)]
+    Table(#[from] RecordingError),
+    #[error(transparent)]
+    Bag(#[from] BagError),
+}
+
+impl OpenSignalsError {
+    /// Returns whether the recording has other names than expected, so that a mapping helps.
+    pub const fn needs_mapping(&self) -> bool {
+        matches!(
+            self,
+            Self::Table(RecordingError::NoColumn { .. })
+                | Self::Bag(BagError::NoMapping { .. } | BagError::NoField { .. } | BagError::NoQuantity { .. })
+        )
+    }
+}
+
+/// Reads the signals of another program's recording; `None` for a session. `is_mapped`: see [`RecordingKind::of`].
+///
+/// # Errors
+/// [`OpenSignalsError`] if it cannot be read, or lacks the mapped quantities.
+pub fn open_signals(
+    path: &Path,
+    mapping: &ColumnMapping,
+    is_mapped: bool,
+) -> Result<Option<Signals>, OpenSignalsError> {
+    Ok(match RecordingKind::of(path, is_mapped)? {
+        RecordingKind::Session => None,
+        RecordingKind::Table => Some(csv::read_signals(path, mapping)?),
+        RecordingKind::Bag => Some(bag::read_signals(path, mapping)?),
+    })
 }
 
 fn is_mcap(path: &Path) -> bool {

@@ -132,7 +132,8 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
             }
         }
     });
-    let blocked = past.is_foreign().then_some(text::playback::ONLY_SESSIONS.get());
+    let blocked = past.blocked();
+    let blocked = blocked.as_deref();
     let end_s = past.about.map_or(0.0, |about| about.end_s);
     ui.add_space(6.0);
     let place = RichText::new(text::playback::position(past.shown_s(), end_s)).font(theme::strong(15.0));

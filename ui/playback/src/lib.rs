@@ -136,11 +136,11 @@ impl Playback {
 
     fn open_any(path: &Path, signals: Option<Arc<Signals>>, ctx: &Context, scene: SceneView) -> Self {
         let wakes = ctx.clone();
-        let worker = PastWorker::start(path, signals, move || wakes.request_repaint());
+        let worker = PastWorker::start(path, signals.clone(), move || wakes.request_repaint());
         worker.show(0.0);
         Self {
             path: path.to_path_buf(),
-            signals: None,
+            signals,
             worker,
             about: None,
             live: None,
@@ -310,6 +310,15 @@ impl Playback {
     /// Returns whether it was recorded by another program: only its signals are known.
     pub const fn is_foreign(&self) -> bool {
         self.signals.is_some()
+    }
+
+    /// Returns why there is no report or excerpt of it.
+    fn blocked(&self) -> Option<String> {
+        if self.is_foreign() {
+            return Some(text::playback::ONLY_SESSIONS.get().to_owned());
+        }
+        let refused = || self.refused().map_or_else(|| text::playback::OPENING.get().to_owned(), str::to_owned);
+        self.about.is_none().then(refused)
     }
 
     pub fn refused(&self) -> Option<&str> {

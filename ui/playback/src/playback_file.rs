@@ -12,17 +12,14 @@ use nima_machine::{
     rig::{DeviceName, SIDES, Side},
     teleop::{Calibrations, Loop, Timing},
 };
-use nima_recording::{
-    bag,
-    csv::{ColumnMapping, Signals, read_signals},
-};
+use nima_recording::csv::{ColumnMapping, Signals};
 use nima_session::{
-    RecordingKind,
+    OpenSignalsError,
     file::{LogLine, RecordedFile},
     images,
     journal::JournalStart,
     objects::{self, ObjectStates},
-    plot_channels,
+    open_signals, plot_channels,
     replay::Keyframe,
 };
 use nima_simulation::scene::Scene;
@@ -65,13 +62,10 @@ impl PlaybackFile {
         if let Some(signals) = signals {
             return of_signals(signals);
         }
-        let usual = ColumnMapping::default();
-        let signals = match RecordingKind::of(path, false).map_err(|error| quoted(&chain(&error)))? {
-            RecordingKind::Session => return Self::of_session(path),
-            RecordingKind::Table => read_signals(path, &usual).map_err(|error| unnamed(&error))?,
-            RecordingKind::Bag => bag::read_signals(path, &usual).map_err(|error| unnamed(&error))?,
-        };
-        of_signals(Arc::new(signals))
+        match open_signals(path, &ColumnMapping::default(), false).map_err(|error| unopened(&error))? {
+            Some(signals) => of_signals(Arc::new(signals)),
+            None => Self::of_session(path),
+        }
     }
 
     fn of_session(path: &Path) -> Result<Self, String> {
@@ -172,9 +166,10 @@ impl PlaybackFile {
     }
 }
 
-/// Returns why a recording is not shown, with the command that selects its signals.
-fn unnamed(error: &dyn std::error::Error) -> String {
-    text::playback::unnamed(&quoted(&chain(error)))
+/// Returns why a recording is not shown, with the command that selects its signals if that helps.
+fn unopened(error: &OpenSignalsError) -> String {
+    let cause = quoted(&chain(error));
+    if error.needs_mapping() { text::playback::unnamed(&cause) } else { cause }
 }
 
 /// Returns a settings table of a session from its file.

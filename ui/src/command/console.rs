@@ -11,13 +11,10 @@ use clap::Args;
 use nima_calibrations::{WizardKind, active_calibrations::ActiveCalibrations};
 use nima_machine::config::SchedulingClass;
 use nima_panels::roles::Role;
-use nima_recording::{
-    bag,
-    csv::{ColumnMapping, Signals, read_signals},
-};
+use nima_recording::csv::{ColumnMapping, Signals};
 use nima_report::output;
 use nima_screen::{link::Reopen, stderr::print_line};
-use nima_session::RecordingKind;
+use nima_session::open_signals;
 use nima_simulation::SimulationPlan;
 use nima_words::language::Language;
 
@@ -106,15 +103,12 @@ pub(super) fn view(arguments: ViewArguments) -> anyhow::Result<()> {
     let ViewArguments { recording, map, language, exit_after, screenshot } = arguments;
     let mapping = ColumnMapping::parse(&map)?;
     anyhow::ensure!(!mapping.names_leader(), "--map selects the leader's own motion, which is not shown: omit it");
-    let signals = match RecordingKind::of(&recording, !map.is_empty())? {
-        RecordingKind::Table => Some(read_signals(&recording, &mapping)?),
-        RecordingKind::Bag => Some(bag::read_signals(&recording, &mapping)?),
-        RecordingKind::Session if map.is_empty() => None,
-        RecordingKind::Session => anyhow::bail!(
-            "--map applies only to tables and other programs' recordings, and {} is a session: omit it",
-            recording.display()
-        ),
-    };
+    let signals = open_signals(&recording, &mapping, !map.is_empty())?;
+    anyhow::ensure!(
+        signals.is_some() || map.is_empty(),
+        "--map applies only to tables and other programs' recordings, and {} is a session: omit it",
+        recording.display()
+    );
     let session = Some(recording);
     let console = ConsoleArguments { language, session, exit_after, screenshot, ..ConsoleArguments::default() };
     open(&console, signals.map(Arc::new))

@@ -33,7 +33,7 @@ impl Default for JawsSettings {
 
 /// Far outside the gears of any wrist: only a wrong unit or a slip of the pen lies beyond.
 const RATIO: RangeInclusive<f64> = 0.01..=100.0;
-const GRIP_MAX: RangeInclusive<f64> = 0.0..=100.0;
+const FACTOR: RangeInclusive<f64> = 0.0..=100.0;
 
 impl JawsSettings {
     /// Refuses values without physical sense, and grip force from a servo that does not measure its current.
@@ -45,15 +45,22 @@ impl JawsSettings {
         if !ratio.iter().all(|one| RATIO.contains(&one.abs())) {
             return refused("ratio", format!("{ratio:?}"), "a number from 0.01 to 100, or the same below zero");
         }
-        if !GRIP_MAX.contains(grip_per_gripper) {
+        if !FACTOR.contains(grip_per_gripper) {
             return refused("grip_per_gripper", grip_per_gripper.to_string(), "0 to 100");
         }
-        if !GRIP_MAX.contains(grip_n_per_a) {
+        if !FACTOR.contains(grip_n_per_a) {
             return refused("grip_n_per_a", grip_n_per_a.to_string(), "0 to 100 N/A");
         }
         let PidGains { proportional, integral_per_s, derivative_s, integral_max } = *pid;
-        if ![proportional, integral_per_s, derivative_s, integral_max].iter().all(|gain| GRIP_MAX.contains(gain)) {
-            return refused("pid", format!("{pid:?}"), "gains from 0 to 100");
+        for (key, gain) in [
+            ("pid.proportional", proportional),
+            ("pid.integral_per_s", integral_per_s),
+            ("pid.derivative_s", derivative_s),
+            ("pid.integral_max", integral_max),
+        ] {
+            if !FACTOR.contains(&gain) {
+                return refused(key, gain.to_string(), "0 to 100");
+            }
         }
         let Some(closing) = servos.map(|servos| &servos.servos[SERVOS - 1]) else { return Ok(()) };
         if *grip_n_per_a > 0.0 && closing.current_limit_a <= 0.0 {

@@ -38,26 +38,22 @@ fn manifest(folder: &Path) -> Table {
     std::fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
 }
 
-/// Returns all dependencies in a manifest, including those for tests and for single systems.
-fn named(manifest: &Table) -> Vec<String> {
+/// Kinds of dependencies, in a manifest.
+const ALL: [&str; 3] = ["dependencies", "build-dependencies", "dev-dependencies"];
+const WITHOUT_TESTS: [&str; 1] = ["dependencies"];
+
+/// Returns the dependencies of these kinds in a manifest, including those for single systems.
+fn named(manifest: &Table, kinds: &[&str]) -> Vec<String> {
     let mut all = Vec::new();
     for (key, value) in manifest {
-        match (key.as_str(), value) {
-            ("dependencies" | "dev-dependencies" | "build-dependencies", Value::Table(named)) => {
-                all.extend(named.keys().cloned());
-            }
-            ("target", Value::Table(systems)) => {
-                all.extend(systems.values().filter_map(Value::as_table).flat_map(named));
-            }
-            _ => {}
+        let Value::Table(value) = value else { continue };
+        if kinds.contains(&key.as_str()) {
+            all.extend(value.keys().cloned());
+        } else if key == "target" {
+            all.extend(value.values().filter_map(Value::as_table).flat_map(|system| named(system, kinds)));
         }
     }
     all
-}
-
-/// Returns the dependencies in a manifest without those for tests.
-fn without_tests(manifest: &Table) -> Vec<String> {
-    manifest.get("dependencies").and_then(Value::as_table).into_iter().flat_map(|table| table.keys().cloned()).collect()
 }
 
 /// Returns why this crate must not depend on that one; `readme` belongs to an extra.
@@ -97,7 +93,8 @@ fn no_crate_names_one_of_a_ring_that_it_must_not_know() {
             faults.push(format!("{folder} has no README.md"));
         }
         // Tests of the screen use emulated devices.
-        let depends_on = if folder.starts_with("ui/") { without_tests(manifest) } else { named(manifest) };
+        let kinds = if folder.starts_with("ui/") { &WITHOUT_TESTS[..] } else { &ALL };
+        let depends_on = named(manifest, kinds);
         for (other, (to, _)) in depends_on.iter().filter_map(|other| crates.get_key_value(other)) {
             edges += 1;
             faults.extend(fault(&ring, &Ring::of(to), &readme).map(|why| format!("{name} names {other}: {why}")));
@@ -125,7 +122,7 @@ fn what_it_must_not_know_is_found() {
     }
     let table: Table =
         "[dependencies]\na.workspace = true\n[target.'cfg(unix)'.dev-dependencies]\nb = '1'".parse().unwrap();
-    assert_eq!(named(&table), ["a", "b"]);
+    assert_eq!(named(&table, &ALL), ["a", "b"]);
     assert_eq!(
         [Ring::of("src/lab/study"), Ring::of("ui/panels"), Ring::of("ui")],
         [Ring::Lab, Ring::Product, Ring::Around]
@@ -140,7 +137,7 @@ const REAL_TIME: [&str; 4] = ["src/devices", "src/machine", "src/simulation", "s
 fn no_crate_of_the_loop_has_a_queue_on_which_a_thread_spins_for_another() {
     for (name, (folder, manifest)) in crates() {
         if REAL_TIME.contains(&folder.as_str()) {
-            assert!(!named(&manifest).iter().any(|one| one == "crossbeam-channel"), "{name}: use `hand_over`");
+            assert!(!named(&manifest, &ALL).iter().any(|one| one == "crossbeam-channel"), "{name}: use `hand_over`");
         }
     }
 }

@@ -93,7 +93,7 @@ pub(super) fn meet(line: &mut dyn ByteStream, settings: &HaplySettings) -> Resul
         line.send(&force_request([0.0; 3])).map_err(gone)?;
         answer = received(line, STATE_BYTES).map_err(gone)?;
         state = answer.windows(STATE_BYTES).rev().find_map(HaplyState::decode);
-        if state.is_some() {
+        if state.is_some_and(|state| state.is_possible()) {
             break;
         }
     }

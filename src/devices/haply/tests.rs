@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::{
     CENTRE_M, HaplyDriver, HaplySettings,
-    codec::{DeviceInfo, HaplyState, WAKE_UP, force_of, force_request},
+    codec::{DeviceInfo, HaplyState, STATE, STATE_BYTES, WAKE_UP, force_of, force_request},
 };
 use crate::{
     ConnectionState, Device as _, DeviceError, HandleReading, Leader as _, Lever, Loss, transport::ByteStream,
@@ -59,7 +59,8 @@ impl ByteStream for Fake {
         if inner.gone {
             return Err(Loss::Disconnected);
         }
-        let count = inner.waiting.len().min(buffer.len());
+        // As few bytes at a time as a serial port may deliver.
+        let count = inner.waiting.len().min(buffer.len()).min(STATE_BYTES);
         buffer.iter_mut().zip(inner.waiting.drain(..count)).for_each(|(to, byte)| *to = byte);
         Ok(count)
     }
@@ -91,9 +92,11 @@ fn opened(settings: &HaplySettings) -> (Fake, HaplyDriver) {
 
 #[test]
 fn a_late_byte_before_the_first_position_is_skipped() {
-    let fake = Fake::new();
-    fake.change(|inner| inner.late = Some(0x2B));
-    assert!(HaplyDriver::over(Box::new(fake), &HaplySettings::at("/dev/ttyACM0")).is_ok());
+    for late in [0x2B, STATE] {
+        let fake = Fake::new();
+        fake.change(|inner| inner.late = Some(late));
+        assert!(HaplyDriver::over(Box::new(fake), &HaplySettings::at("/dev/ttyACM0")).is_ok(), "{late:#x}");
+    }
 }
 
 /// Runs ticks of the loop with this force; returns the newest reading.

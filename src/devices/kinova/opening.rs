@@ -21,7 +21,7 @@ use super::{
     session::{KinovaFailure, KinovaLines},
     settings::KinovaSettings,
 };
-use crate::{ARM_JOINTS, ArmReading, Device, DeviceError, DeviceIdentity};
+use crate::{ARM_JOINTS, ArmReading, Device, DeviceError, DeviceIdentity, same_serial};
 
 /// A person's request to clear the faults of an arm. It is kept until the arm is next opened, because an arm in fault
 /// is never connected.
@@ -131,7 +131,7 @@ fn prepare(
 }
 
 fn check_serial(settings: &KinovaSettings, identity: &DeviceIdentity, place: &str) -> Result<(), DeviceError> {
-    let Some(wanted) = settings.serial_number.as_ref().filter(|wanted| wanted.trim() != identity.serial.trim()) else {
+    let Some(wanted) = settings.serial_number.as_ref().filter(|wanted| !same_serial(wanted, &identity.serial)) else {
         return Ok(());
     };
     let found = if identity.serial.is_empty() { "unknown" } else { &identity.serial };

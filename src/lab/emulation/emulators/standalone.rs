@@ -6,6 +6,8 @@ use std::{
     str::FromStr,
 };
 
+use nima_devices::ARM_JOINTS;
+
 /// Settings `KEY=VALUE`. A device ignores the keys of other devices, but a key that no device has asked for is an error
 /// ([`check`](Self::check)).
 #[derive(Debug, Default)]
@@ -63,6 +65,16 @@ impl EmulatorSettings {
     /// Returns the value of `key`, or the default.
     pub(super) fn get_or<T: FromStr>(&self, key: &str, usual: T) -> Result<T> {
         Ok(self.get(key)?.unwrap_or(usual))
+    }
+
+    /// Returns the number of joints of an arm: 7, or 6 if set.
+    pub(super) fn joints(&self) -> Result<usize> {
+        let joints = self.get_or("joints", ARM_JOINTS)?;
+        if (ARM_JOINTS - 1..=ARM_JOINTS).contains(&joints) {
+            Ok(joints)
+        } else {
+            Err(unusable("joints", joints, "give 6 or 7"))
+        }
     }
 
     /// Returns one of two models by name; the first by default.

@@ -2,8 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use nalgebra::{Isometry3, Vector3};
-use nima_core::kinematics::{ArmChain, ArmModel, ChainJoint};
+use nima_core::kinematics::ArmModel;
 use nima_devices::{
     ConnectionState, Device as _, DeviceError, Follower as _, Loss,
     discovery::{probe_named, probes},
@@ -12,19 +11,10 @@ use nima_devices::{
 use nima_testing::real_time::judged;
 
 use super::*;
-use crate::emulators::{EmulatorThread, kinova::StandIn};
-
-/// Six joints about z: the driver does not use where they are.
-fn six_joints() -> ArmModel {
-    let joint = ChainJoint {
-        from_previous: Isometry3::translation(0.0, 0.0, 0.1),
-        axis: Vector3::z(),
-        range_rad: [-3.0, 3.0],
-        speed_rad_s: 1.0,
-        acceleration_rad_s2: 5.0,
-    };
-    ArmModel::new(&ArmChain { joints: vec![joint; 6], last_from_flange: Isometry3::identity() }).unwrap()
-}
+use crate::emulators::{
+    EmulatorThread,
+    kinova::{StandIn, opening_tests::six_joints},
+};
 
 fn serving(joints: usize) -> (EmulatorThread, ExternalSettings) {
     let free = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();

@@ -27,7 +27,7 @@ mod interface;
 mod joint_motion;
 mod moves;
 #[cfg(test)]
-mod opening_tests;
+pub(super) mod opening_tests;
 mod robot;
 #[cfg(test)]
 mod route_tests;

@@ -81,12 +81,17 @@ fn a_silent_arm_and_a_stranger_at_its_port_are_told_apart() {
     });
 }
 
+/// Returns the shipped model of a Gen3 with six joints.
+pub(in crate::emulators) fn six_joints() -> ArmModel {
+    let text = include_str!("../../../../../assets/arms/gen3-6dof.urdf");
+    let ends = ChainEnds { base_link: "base_link", flange_link: "end_effector_link" };
+    ArmModel::new(&chain_of(text, ends, 2.0).unwrap()).unwrap()
+}
+
 #[test]
 fn a_gen3_with_six_joints_is_led_by_its_description_and_no_other_arm_is() {
     judged(|| {
-        let text = include_str!("../../../../../assets/arms/gen3-6dof.urdf");
-        let ends = ChainEnds { base_link: "base_link", flange_link: "end_effector_link" };
-        let model = ArmModel::new(&chain_of(text, ends, 2.0).unwrap()).unwrap();
+        let model = six_joints();
         let (_serving, settings) = started(patient());
         let other = open_clearing(&settings, &model, &FaultClearing::default()).unwrap_err();
         assert!(matches!(other, DeviceError::WrongProduct { found, .. } if found == "arm with 7 joints"));

@@ -2,6 +2,7 @@
 
 use std::{fmt, path::PathBuf, str::FromStr};
 
+use nima_files::public_address;
 use percent_encoding::percent_decode_str;
 
 /// Maximum length of an address.
@@ -25,8 +26,8 @@ pub enum Address {
     File(PathBuf),
 }
 
-/// A camera on the network.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A camera on the network. `Debug` hides path and password, which may give access.
+#[derive(Clone, PartialEq, Eq)]
 pub struct Endpoint {
     /// Name or number.
     pub host: String,
@@ -50,6 +51,13 @@ pub struct Login {
 impl fmt::Debug for Login {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Login").field("user", &self.user).finish_non_exhaustive()
+    }
+}
+
+impl fmt::Debug for Endpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Not its path, which may contain a password.
+        f.debug_struct("Endpoint").field("place", &self.place()).field("login", &self.login).finish_non_exhaustive()
     }
 }
 
@@ -98,7 +106,8 @@ impl FromStr for Address {
 
     fn from_str(text: &str) -> Result<Self, AddressError> {
         // Keep the message to one short line that never shows a password.
-        let public = text.rsplit_once('@').map_or(text, |(_, place)| place);
+        let open = public_address(text);
+        let public = open.rsplit_once('@').map_or(open.as_str(), |(_, place)| place);
         let shown = || public.chars().take(80).filter(|c| !c.is_control()).collect();
         let wrong = |why| Err(AddressError { address: shown(), why });
         if text.is_empty() {
@@ -193,14 +202,20 @@ impl Endpoint {
         let (open, close) = if self.host.contains(':') { ("[", "]") } else { ("", "") };
         format!("{open}{}{close}:{}", self.host, self.port)
     }
+
+    /// Returns the address for a request: without user and password, but with all settings, also those that give
+    /// access.
+    pub(crate) fn url(&self, scheme: &str) -> String {
+        format!("{scheme}://{}{}", self.place(), self.path)
+    }
 }
 
-/// Without user and password.
+/// Without user and password, and without settings that give access.
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Http(endpoint) => write!(f, "http://{}{}", endpoint.place(), endpoint.path),
-            Self::Rtsp(endpoint) => write!(f, "rtsp://{}{}", endpoint.place(), endpoint.path),
+            Self::Http(endpoint) => f.write_str(&public_address(&endpoint.url("http"))),
+            Self::Rtsp(endpoint) => f.write_str(&public_address(&endpoint.url("rtsp"))),
             Self::Camera { path, capture: Capture { size_px, rate_hz, pixels } } => {
                 write!(f, "v4l2:{}", path.display())?;
                 let mut sign = '?';
@@ -253,6 +268,26 @@ mod tests {
         assert_eq!(login_of("http://eva@cam:81"), expected("eva", ""));
         let refused = "http://eva:secret@cam:0/".parse::<Address>().unwrap_err().to_string();
         assert!(!refused.contains("secret"), "{refused}");
+    }
+
+    #[test]
+    fn a_password_in_the_settings_of_an_address_is_sent_and_never_shown() {
+        for (text, shown) in [
+            ("http://cam/video?pwd=secret&user=eva", "http://cam:80/video?pwd=&user=eva"),
+            ("http://cam:81/?user=eva&password=secret", "http://cam:81/?user=eva&password="),
+            ("http://cam/v.cgi?loginuse=eva&loginpas=secret", "http://cam:80/v.cgi?loginuse=eva&loginpas="),
+            ("rtsp://cam/user=eva&password=secret&channel=1", "rtsp://cam:554/user=eva&password=&channel=1"),
+        ] {
+            let address: Address = text.parse().unwrap();
+            assert_eq!(address.to_string(), shown);
+            assert!(!format!("{address:?}").contains("secret"), "{address:?}");
+            let (Address::Http(endpoint) | Address::Rtsp(endpoint)) = address else { panic!("{text}") };
+            assert!(endpoint.path.contains("secret") && endpoint.url("http").ends_with(&endpoint.path), "{text}");
+        }
+        for text in ["http://cam:0/?pwd=secret", "http://cam:0/?pwd=a@secret", "http://eva:secret/@cam/?key=secret"] {
+            let refused = text.parse::<Address>().unwrap_err().to_string();
+            assert!(!refused.contains("secret") && refused.contains("cam"), "{refused}");
+        }
     }
 
     #[test]
@@ -313,12 +348,17 @@ mod tests {
             text in "(http://|rtsp://|v4l2:/dev/|/dev/v(.size=[0-9x]{1,9}&rate=[0-9]{1,3}.format=nv12)?)?.{0,40}",
         ) {
             let Ok(mut address) = text.parse::<Address>() else { return Ok(()) };
-            match &mut address {
+            let sent = |endpoint: &mut Endpoint, scheme: &str| {
+                endpoint.login = None;
+                endpoint.url(scheme)
+            };
+            let again = match &mut address {
                 Address::File(_) => return Ok(()),
-                Address::Http(endpoint) | Address::Rtsp(endpoint) => endpoint.login = None,
-                Address::Camera { .. } => {}
-            }
-            prop_assert_eq!(address.to_string().parse::<Address>(), Ok(address));
+                Address::Http(endpoint) => sent(endpoint, "http"),
+                Address::Rtsp(endpoint) => sent(endpoint, "rtsp"),
+                Address::Camera { .. } => address.to_string(),
+            };
+            prop_assert_eq!(again.parse::<Address>(), Ok(address));
         }
     }
 }

@@ -19,7 +19,7 @@ use retina::{
 use tokio::{runtime::Runtime, time::timeout};
 use url::Url;
 
-use crate::{Address, CompressedFrame, EndoscopeError, Endpoint, Format, ImageSource, Login, http};
+use crate::{CompressedFrame, EndoscopeError, Endpoint, Format, ImageSource, Login, http};
 
 /// Time in which the camera must have answered all requests and started to send.
 const OPENING: Duration = Duration::from_secs(3);
@@ -69,7 +69,7 @@ fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, EndoscopeError>) -> 
 fn begin(endpoint: &Endpoint) -> Result<Box<dyn ImageSource>, EndoscopeError> {
     let place = endpoint.place();
     let other = |reason: String| EndoscopeError::Other { place: place.clone(), reason };
-    let url = Url::parse(&Address::Rtsp(endpoint.clone()).to_string()).map_err(|error| other(error.to_string()))?;
+    let url = Url::parse(&endpoint.url("rtsp")).map_err(|error| other(error.to_string()))?;
     let login = endpoint.login.clone().map(|Login { user, password }| Credentials { username: user, password });
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| other(error.to_string()))?;

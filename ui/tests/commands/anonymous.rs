@@ -163,7 +163,7 @@ fn planted(session: &str, to: &Path) {
 }
 
 /// Returns all bytes of a session: the raw file, and its decompressed content.
-fn all_bytes(path: &Path) -> Vec<u8> {
+pub(crate) fn all_bytes(path: &Path) -> Vec<u8> {
     let reader = SessionReader::open(path).unwrap();
     let mut bytes = std::fs::read(path).unwrap();
     for channel in reader.channels() {

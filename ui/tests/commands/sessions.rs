@@ -2,7 +2,10 @@
 use std::{path::Path, process::Command, process::Output};
 
 use nima_recording::session::SessionWriter;
+use nima_tests::studies::everything;
 use serde_json::Value;
+
+use crate::anonymous::all_bytes;
 
 fn nima(data: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima")).args(arguments).env("NIMA_DATA_DIR", data).output().unwrap()
@@ -79,4 +82,21 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
         assert!(done(data, &["sessions", "--delete", name]).contains("is deleted"));
     }
     assert!(!at("a.mcap").exists() && at("b.mcap").exists() && outside.exists());
+}
+
+#[test]
+fn a_session_and_its_report_have_no_password_of_the_camera() {
+    let data = tempfile::tempdir().unwrap();
+    let data = data.path();
+    let [rig, session, report] = ["rig.toml", "run.mcap", "report"].map(|name| data.join(name).display().to_string());
+    let camera = "\n[endoscope]\nurl = \"http://eva:s3cret@127.0.0.1:1/video?pwd=s3cret&fps=30\"\n";
+    std::fs::write(&rig, include_str!("../../../config/rigs/simulated.toml").to_owned() + camera).unwrap();
+    let run = nima(data, &["run", "--seconds", "1", "--rig", &rig, "--record", &session, "--log", "debug"]);
+    done(data, &["report", &session, "--out", &report]);
+    let mut seen = all_bytes(session.as_ref());
+    seen.extend([run.stdout, run.stderr].concat());
+    seen.extend(everything(report.as_ref()).into_bytes());
+    let contains = |words: &str| memchr::memmem::find(&seen, words.as_bytes()).is_some();
+    assert!(contains("http://127.0.0.1:1/video?pwd=&fps=30"), "the session names the camera");
+    assert!(!contains("s3cret"), "in {} bytes", seen.len());
 }

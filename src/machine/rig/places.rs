@@ -194,8 +194,10 @@ impl RigSettings {
 
 #[cfg(test)]
 mod tests {
+    use std::net::Ipv4Addr;
+
     use super::*;
-    use crate::config::RigConfig;
+    use crate::{config::RigConfig, rig::LeaderSettings};
 
     fn refusal(name: &str, change: impl FnOnce(&mut RigSettings)) -> String {
         let mut settings = RigConfig::load(name).unwrap().devices.unwrap();
@@ -250,6 +252,67 @@ mod tests {
             }
         });
         assert!(arms.contains("devices.left.arm.serial_number"), "{arms}");
+    }
+
+    /// Addresses with which devices leave the factory (manuals of the Gen3 and of Bota's sensors for networks). Only a
+    /// comment of a rig may state them.
+    const FACTORY: [&str; 2] = ["192.168.1.10", "192.168.1.1"];
+
+    /// Returns whether nothing leaves this computer by this address.
+    fn stays_here(host: &str) -> bool {
+        let ip = host.trim_matches(['[', ']']).parse::<IpAddr>();
+        host == "localhost" || transport::is_example(host) || ip.is_ok_and(|ip| ip.is_loopback())
+    }
+
+    /// Returns the numeric addresses in a text.
+    fn addresses(text: &str) -> impl Iterator<Item = &str> {
+        let words = text.split(|letter: char| !letter.is_ascii_digit() && letter != '.');
+        words.map(|word| word.trim_matches('.')).filter(|word| word.parse::<Ipv4Addr>().is_ok())
+    }
+
+    /// Returns the addresses to which the parts and the camera of a rig lead, with their keys.
+    fn network(rig: &RigConfig) -> Vec<(&'static str, String)> {
+        let parts =
+            rig.devices.iter().flat_map(|devices| RigPart::ALL.map(|part| devices.places(part)).into_iter().flatten());
+        let desk = rig.desk.iter().filter_map(|desk| desk.handle.as_ref()).flat_map(LeaderSettings::places);
+        let camera = rig.endoscope.as_ref().and_then(|endoscope| endoscope.url.split_once("://"));
+        let camera = camera.map(|(_, rest)| {
+            let authority = rest.split(['/', '?']).next().unwrap_or_default();
+            ("url", Place::tcp_at(authority, 80))
+        });
+        let host = |(key, place): NamedPlace| match place {
+            Place::Port { host, .. } => Some((key, host)),
+            Place::File(_) => None,
+        };
+        parts.chain(desk).chain(camera).filter_map(host).collect()
+    }
+
+    /// Otherwise a test or a copy of an example could reach another laboratory's device.
+    #[test]
+    fn the_rigs_that_come_with_the_program_have_no_address_of_a_device() {
+        assert!(!FACTORY.into_iter().any(stays_here) && !stays_here("cam.local") && !stays_here("0.0.0.0"));
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let folders = ["config/rigs", "assets/arms"].map(|folder| std::fs::read_dir(root.join(folder)).unwrap());
+        let files = folders.into_iter().flatten().map(|entry| entry.unwrap().path());
+        let mut found = Vec::new();
+        for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "toml")) {
+            let name = file.display().to_string();
+            for line in std::fs::read_to_string(&file).unwrap().lines() {
+                let (settings, comment) = line.split_once('#').unwrap_or((line, ""));
+                assert!(addresses(settings).all(stays_here), "{name}: {line}");
+                let is_stated = |address: &str| stays_here(address) || FACTORY.contains(&address);
+                assert!(addresses(comment).all(is_stated), "{name}: {line}");
+            }
+            for (key, host) in network(&RigConfig::load(&name).unwrap()) {
+                assert!(stays_here(&host), "{name}: {key} = {host}");
+                found.push((key, host));
+            }
+        }
+        for (key, host) in
+            [("host", "192.0.2.10"), ("address", "192.0.2.20"), ("url", "127.0.0.1"), ("listen", "127.0.0.1")]
+        {
+            assert!(found.contains(&(key, host.to_owned())), "{key} = {host} was not even seen: {found:?}");
+        }
     }
 
     #[test]

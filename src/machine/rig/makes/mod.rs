@@ -98,14 +98,19 @@ mod tests {
 
     const SIMULATED: &str = "make = \"simulated\"\nstart_rad = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92]\n";
 
+    /// Returns the paper's rig file with this text as one of its tables, and the line of the table's head.
+    fn paper_with(table: &str, text: &str) -> (String, usize) {
+        let paper = toml::to_string(&RigConfig::load("paper").unwrap()).unwrap();
+        let head = format!("[{table}]\n");
+        let (before, rest) = paper.split_once(head.as_str()).unwrap();
+        let after = &rest[rest.find("\n[").unwrap()..];
+        (format!("{before}{head}{text}\n{after}"), before.lines().count() + 1)
+    }
+
     /// Parses this text as the arm of a rig file.
     fn arm(text: &str) -> Result<FollowerSettings, String> {
-        let paper = toml::to_string(&RigConfig::load("paper").unwrap()).unwrap();
-        let (before, rest) = paper.split_once("[devices.right.arm]\n").unwrap();
-        let after = &rest[rest.find("\n[").unwrap()..];
-        let whole = format!("{before}[devices.right.arm]\n{text}\n{after}");
+        let (whole, begin) = paper_with("devices.right.arm", text);
         let read = parse_with::<RigConfig>("rig", "paper.toml".as_ref(), &whole, take_out_makes);
-        let begin = before.lines().count() + 1;
         read.map(|rig| rig.devices.unwrap().right.unwrap().arm).map_err(|error| {
             let words = error.to_string();
             let (line, words) = words.strip_prefix("rig file paper.toml: line ").unwrap().split_once(": ").unwrap();
@@ -141,5 +146,47 @@ mod tests {
         assert!(key.starts_with("3: unknown field `hosts`"), "{key}");
         let value = report("host = \"10.0.0.1\"\nspeed_fraction = \"half\"");
         assert!(value.starts_with("2: invalid type: string"), "{value}");
+    }
+
+    /// Reads a rig file with this text as its right sensor, and checks it.
+    fn sensor(text: &str) -> Result<SensorSettings, String> {
+        let (whole, _) = paper_with("devices.right.sensor", text);
+        let read = RigConfig::parse("paper.toml".as_ref(), &whole);
+        read.map(|rig| rig.devices.unwrap().right.unwrap().sensor).map_err(|error| {
+            let cause = std::error::Error::source(&error).map(ToString::to_string);
+            cause.unwrap_or_else(|| error.to_string())
+        })
+    }
+
+    #[test]
+    fn a_sensor_of_ati_is_read_from_a_rig_file_and_a_bad_value_is_refused_by_key_and_remedy() {
+        let counts = "counts_per_n = 1000000.0\ncounts_per_nm = 2000000.0";
+        for more in ["", "rdt_port = 1\nhttp_port = 2\nrate_hz = 7000\nserial_number = \"FT12345\"", counts] {
+            let chosen = sensor(&format!("make = \"ati\"\nhost = \"192.0.2.30\"\n{more}")).unwrap();
+            let SensorSettings::Ati(settings) = &chosen else { panic!("{chosen:?}") };
+            assert_eq!(settings.host, "192.0.2.30");
+            assert_eq!(sensor(&toml::to_string(&chosen).unwrap()).unwrap(), chosen);
+            let emulated = chosen.check_emulated(true).unwrap_err().to_string();
+            assert!(emulated.contains("make = ati") && emulated.contains("omit `make`"), "{emulated}");
+        }
+        let both = format!("host = \"a\"\nserial_number = \"FT12345\"\n{counts}");
+        for (text, key, remedy) in [
+            ("host = \" \"", "devices.right.sensor.host", "leaves the factory with 192.168.1.1"),
+            ("host = \"a\"\nrate_hz = 5", "devices.right.sensor.rate_hz = 5", "20 to 8000 Hz"),
+            ("host = \"a\"\nrate_hz = nan", "devices.right.sensor.rate_hz = NaN", "20 to 8000 Hz"),
+            ("host = \"a\"\ncounts_per_nm = 1000.0", "devices.right.sensor.counts_per_nm", "both counts_per_n and"),
+            (
+                "host = \"a\"\ncounts_per_n = 0.5\ncounts_per_nm = 1000.0",
+                "devices.right.sensor.counts_per_n = 0.5",
+                "1 to 1e9, as on the sensor's page",
+            ),
+            (both.as_str(), "devices.right.sensor.serial_number = FT12345", "omitted with counts_per_n"),
+            ("rate_hz = 1000", "missing field `host`", "line "),
+            ("host = \"a\"\nrdt_port = 70000", "70000", "u16"),
+            ("host = \"a\"\nport = 1", "unknown field `port`", "`rdt_port`"),
+        ] {
+            let report = sensor(&format!("make = \"ati\"\n{text}")).unwrap_err();
+            assert!(report.contains(key) && report.contains(remedy), "{text}: {report}");
+        }
     }
 }

@@ -13,7 +13,7 @@ use nima_devices::{
 
 use super::{
     super::{Bus, EmulatedDynamixel},
-    world::{Fixture, emulated, settings},
+    world::{Fixture, emulated, settings, with_unsupported},
 };
 use crate::emulators::EmulatedFault;
 
@@ -121,6 +121,16 @@ fn what_is_missing_or_another_is_named() {
     weak.servos.iter_mut().for_each(|servo| servo.current_limit_a = 1.8);
     let small = opened(EmulatedDynamixel { model: 1200, ..emulated() }, weak);
     assert!(matches!(&small, Some(DeviceError::Setting { key, .. }) if key == "current_limit_a"), "{small:?}");
+}
+
+#[test]
+fn a_servo_of_an_unsupported_model_is_refused_with_its_number_and_the_supported_ones() {
+    let report = Fixture::new(with_unsupported(&emulated()), settings()).open().unwrap_err();
+    assert!(matches!(report, DeviceError::Unsupported { .. }), "{report:?}");
+    let words = format!("{report}: {}", report.cure());
+    for expected in ["servo 3 on test", "model number 350", "not supported", "XM430-W350", "XC430-W240"] {
+        assert!(words.contains(expected), "{expected} is not in: {words}");
+    }
 }
 
 #[test]

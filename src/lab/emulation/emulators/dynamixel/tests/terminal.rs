@@ -4,15 +4,16 @@ use std::time::{Duration, Instant};
 
 use nima_devices::{
     ConnectionState, Device as _, DeviceError, DeviceSlot, Loss,
+    discovery::probe_named,
     dynamixel::{DynamixelDriver, DynamixelSettings, Reboots, open, open_with},
 };
 use nima_testing::real_time::judged;
 
 use super::{
     super::EmulatedDynamixel,
-    world::{emulated, settings},
+    world::{emulated, settings, with_unsupported},
 };
-use crate::emulators::{EmulatedFault, EmulatorThread};
+use crate::emulators::{EmulatedFault, Emulator, EmulatorThread};
 
 fn serving(settings_of: &EmulatedDynamixel) -> (EmulatorThread, DynamixelSettings) {
     let serving = settings_of.with(None).unwrap().serve().unwrap();
@@ -133,5 +134,18 @@ fn why_it_cannot_be_opened_is_told() {
         assert!(matches!(open(&settings).err(), Some(DeviceError::Silent { .. })));
         drop(serving);
         assert_eq!(open(&settings).err(), Some(DeviceError::Absent { place: settings.port.clone() }));
+    });
+}
+
+#[test]
+fn a_probe_names_a_servo_of_an_unsupported_model_by_its_number() {
+    judged(|| {
+        let bus: Box<dyn Emulator> = Box::new(with_unsupported(&EmulatedDynamixel::default()));
+        let serving = bus.serve().unwrap();
+        let mut probe = probe_named(&format!("dynamixel={}", serving.endpoint)).unwrap();
+        let report = probe.probe(Duration::from_secs(1)).unwrap_err();
+        assert!(matches!(report, DeviceError::Unsupported { .. }), "{report:?}");
+        let words = report.to_string();
+        assert!(words.contains("servo 3") && words.contains("model number 350"), "{words}");
     });
 }

@@ -6,6 +6,7 @@ use nima_devices::{
     Device as _, DeviceError, ServoReading, TimedReading,
     dynamixel::{
         DynamixelDriver, DynamixelSettings, Gains, OperatingMode, Reboots, ServoSettings, WaitClock, open_over,
+        table::{self, ServoModel},
     },
     transport::{ByteStream as _, MemoryBytes},
 };
@@ -40,6 +41,17 @@ pub(super) fn settings() -> DynamixelSettings {
 
 pub(super) fn emulated() -> EmulatedDynamixel {
     EmulatedDynamixel { baud: 4_000_000, ..EmulatedDynamixel::default() }
+}
+
+/// Returns servos of which the third has protocol 2, but another control table than the X series.
+pub(super) fn with_unsupported(settings: &EmulatedDynamixel) -> Bus {
+    /// Model number from the ROBOTIS e-manual.
+    static XL_320: ServoModel = ServoModel { number: 350, name: "XL-320", current_unit_a: f64::NAN, current_max: 0 };
+    let mut bus = Bus::new(settings, None).unwrap();
+    let servo = &mut bus.servos[2];
+    servo.model = &XL_320;
+    servo.set(table::MODEL, XL_320.number.into());
+    bus
 }
 
 pub(super) struct World {

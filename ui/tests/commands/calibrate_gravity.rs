@@ -74,3 +74,27 @@ fn bad_files_are_refused_with_their_place() {
     with("fx_n,fy_n,fz_n,qw,qx,qy,qz\n1,2,3,1,0,0,0\n1,2,3,1,1,0,0\n", "line 3: the quaternion has length 1.414");
     with("fx_n,fy_n,fz_n,ax,ay,az\n", "no poses were given");
 }
+
+#[test]
+fn the_weighed_mass_confirms_the_units_or_names_the_wrong_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = poses(folder.path(), 12, 1.0);
+    let out = folder.path().join("g.toml");
+    let [file, out] = [file.as_str(), out.to_str().unwrap()];
+    for mass_kg in ["0", "-0.4", "nan", "400"] {
+        let weighed = format!("--mass-kg={mass_kg}");
+        refused(&[file, &weighed, "--out", out], "enter the mass in kg, above 0 and at most 10");
+    }
+    // The forces as a sensor that is set to pounds would send them.
+    let pounds = "fxyz=fx_n,fy_n,fz_n*0.22481";
+    assert!(nima(&[file, "--map", pounds]).status.success(), "without a mass, another unit is another tool");
+    refused(
+        &[file, "--map", pounds, "--mass-kg", "0.4", "--out", out],
+        "the fitted mass is 0.090 kg, but the tool weighs 0.400 kg; the forces are probably in pounds (lbf)",
+    );
+    refused(&[file, "--mass-kg", "0.5", "--out", out], "the fitted mass is 0.400 kg, but the tool weighs 0.500 kg");
+    assert!(!Path::new(out).exists());
+    let output = nima(&[file, "--mass-kg", "0.41", "--out", out]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(Path::new(out).exists());
+}

@@ -151,3 +151,38 @@ fn bad_files_are_refused_with_their_place_and_nothing_is_written() {
     let line = one_line(&calibrate(&good, &["--out", nowhere.to_str().unwrap()]));
     assert!(line.contains("cannot write"), "{line}");
 }
+
+#[test]
+fn columns_of_other_names_are_mapped_and_a_bad_mapping_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = pairs(folder.path(), |v| v);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (_, rows) = text.split_once('\n').unwrap();
+    std::fs::write(&path, format!("wrist_x,wrist_y,wrist_z,tissue_x,tissue_y,tissue_z,a,b,c,d\n{rows}")).unwrap();
+    let out = folder.path().join("c.toml");
+    let mapped = |maps: &[&str]| {
+        let maps = maps.iter().flat_map(|map| ["--map", *map]);
+        calibrate(&path, &maps.chain(["--out", out.to_str().unwrap()]).collect::<Vec<_>>())
+    };
+    let wrist = "f1xyz=wrist_x,wrist_y,wrist_z";
+    let tissue = "f2xyz=tissue_x,tissue_y,tissue_z";
+    let turned = "qwxyz=a,b,c,d";
+    let refused: [(&[&str], &str); 7] = [
+        (&[], "no column \"f1x_n\""),
+        (&[wrist, tissue, "f2x=tissue_x"], "\"f2x\" is mapped twice"),
+        (&[wrist, "f2xyz=tissue_x,tissue_y"], "\"f2xyz\" takes 3 columns, not 2"),
+        (&[wrist, "f2xyz=tissue_x,tissue_y,depth"], "no column \"depth\""),
+        (&["xyz=wrist_x,wrist_y,wrist_z"], "there is no quantity \"xyz\"; use one of f1x, f1y"),
+        (&[wrist, "f2xyz=tissue_x,tissue_y,tissue_z*0"], "the scale \"0\" is not a number other than zero"),
+        (&[wrist, "f2xyz=tissue_x,tissue_y,tissue_z*-1", turned], "opposite forces"),
+    ];
+    for (maps, words) in refused {
+        let line = one_line(&mapped(maps));
+        assert!(line.contains(words), "\"{words}\" is not in: {line}");
+        assert!(!out.exists());
+    }
+    let output = mapped(&[wrist, tissue, turned]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let record: CorrespondenceRecord = store::read(&out).unwrap().unwrap();
+    assert!(record.rotation().angle_to(&truth()).to_degrees() < 0.2);
+}

@@ -1,5 +1,6 @@
-//! Right and left swapped, one location at a time: on the wire where possible, otherwise in the rig file. Each swap
-//! must be reported by name, with the remedy, before any force; without a swap nothing must be reported.
+//! Right and left swapped, one location at a time: on the wire where possible, otherwise in the rig file; and one device
+//! for both. Each swap must be reported by name, with the remedy, before any force; without a swap nothing must be
+//! reported.
 #![cfg(target_os = "linux")]
 use std::{
     path::Path,
@@ -37,9 +38,14 @@ struct Row {
 enum ReportSource {
     /// The devices of these parts are rejected.
     Kept(&'static [&'static str]),
-    Obstacle(SideSwap),
+    /// No arm can be engaged, for this reason.
+    Obstacle(EngageBlocker),
     /// No detection needed: the devices are found automatically, and each is used correctly.
     Harmless,
+}
+
+const fn swapped(swap: SideSwap) -> ReportSource {
+    ReportSource::Obstacle(EngageBlocker::Exchanged(swap))
 }
 
 fn row(place: &'static str, report: ReportSource) -> Row {
@@ -178,11 +184,7 @@ fn rows() -> Vec<Row> {
             },
             ..row("cables of arms that only a ready check knows", ReportSource::Kept(&["right arm", "left arm"]))
         },
-        Row {
-            wire: exchange_arms,
-            file: nameless_arms,
-            ..row("cables of unknown arms", ReportSource::Obstacle(SideSwap::Arms))
-        },
+        Row { wire: exchange_arms, file: nameless_arms, ..row("cables of unknown arms", swapped(SideSwap::Arms)) },
         Row {
             wire: exchange_sensors,
             ..row("cables of the sensors", ReportSource::Kept(&["right sensor", "left sensor"]))
@@ -214,14 +216,14 @@ fn rows() -> Vec<Row> {
             wire: exchange_servos,
             ..row("cables of the servos", ReportSource::Kept(&["right servos", "left servos"]))
         },
-        Row { markers: true, ..row("markers on the instruments", ReportSource::Obstacle(SideSwap::Markers)) },
+        Row { markers: true, ..row("markers on the instruments", swapped(SideSwap::Markers)) },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
                 std::mem::swap(&mut right.s1_from_m_deg, &mut left.s1_from_m_deg);
                 std::mem::swap(&mut right.s1_from_m_m, &mut left.s1_from_m_m);
             },
-            ..row("values of the markers in the file", ReportSource::Obstacle(SideSwap::Markers))
+            ..row("values of the markers in the file", swapped(SideSwap::Markers))
         },
         Row {
             file: |devices| {
@@ -229,21 +231,31 @@ fn rows() -> Vec<Row> {
                 std::mem::swap(&mut right.base_from_c_m, &mut left.base_from_c_m);
                 std::mem::swap(&mut right.base_from_c_deg, &mut left.base_from_c_deg);
             },
-            ..row("values of the camera in the file", ReportSource::Obstacle(SideSwap::Markers))
+            ..row("values of the camera in the file", swapped(SideSwap::Markers))
         },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
                 std::mem::swap(&mut right.mount, &mut left.mount);
             },
-            ..row("mounts of the arms in the file", ReportSource::Obstacle(SideSwap::Arms))
+            ..row("mounts of the arms in the file", swapped(SideSwap::Arms))
         },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
                 std::mem::swap(&mut right.rcm, &mut left.rcm);
             },
-            ..row("trocars in the file", ReportSource::Obstacle(SideSwap::Trocars))
+            ..row("trocars in the file", swapped(SideSwap::Trocars))
+        },
+        Row {
+            // As if both addresses led to one arm, for instance through a name and a number.
+            wire: |devices| {
+                let [right, left] = sets(devices);
+                let serial = right.arm.kinova_mut().unwrap().serial_number.clone();
+                left.arm.kinova_mut().unwrap().serial_number = serial;
+            },
+            file: nameless_arms,
+            ..row("one serial number for both arms", ReportSource::Obstacle(EngageBlocker::OneArm))
         },
     ]
 }
@@ -333,8 +345,7 @@ impl Machine {
                 assert!(report.iter().all(|words| words.contains("swapped")), "{report:?}");
                 report
             }
-            ReportSource::Obstacle(exchange) => {
-                let named = EngageBlocker::Exchanged(exchange);
+            ReportSource::Obstacle(named) => {
                 self.until(row.place, |machine| {
                     machine.healths.obstacles == [Some(named); 2]
                         && machine.refusals.contains(&Refusal::Obstacle(named))

@@ -27,6 +27,14 @@ fn stepped(control: &mut Loop, inputs: &[Option<Inputs>; SIDES], tick: u64) -> (
     (outputs, ticks.map(Option::unwrap))
 }
 
+fn refusals(control: &Loop) -> Vec<(Side, Refusal)> {
+    let refused = |event: &Event| match *event {
+        Event::CommandRefused { side, why, .. } => Some((side, why)),
+        _ => None,
+    };
+    control.events().filter_map(refused).collect()
+}
+
 impl Fixture {
     fn new() -> Self {
         Self::of(&RigConfig::load("simulated").unwrap())
@@ -67,11 +75,7 @@ impl Fixture {
 
     /// Refusals since the last command, with their reasons.
     fn refusals(&self) -> Vec<(Side, Refusal)> {
-        let refused = |event: &Event| match *event {
-            Event::CommandRefused { side, why, .. } => Some((side, why)),
-            _ => None,
-        };
-        self.control.events().filter_map(refused).collect()
+        refusals(&self.control)
     }
 
     fn states(&self) -> [LoopState; SIDES] {
@@ -139,6 +143,33 @@ fn a_refused_engagement_says_why_and_one_arm_that_obeys_does_not_hide_the_other(
     bench.run(100, |_, _| None);
     bench.obey(Command::EngageOne(Side::Left));
     assert_eq!(bench.refusals(), [(Side::Left, Refusal::State(LoopState::Disconnected))]);
+}
+
+#[test]
+fn an_arm_that_the_rig_does_not_have_is_refused_and_the_other_one_engages() {
+    let rig = RigConfig::load("simulated").unwrap();
+    let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
+    let mut worlds = Worlds::new(&Scene::load("peg_transfer").unwrap(), rig.rate_hz);
+    let mut outputs = [Outputs::SAFE; SIDES];
+    let mut states = Vec::new();
+    let mut refused = Vec::new();
+    for tick in 0..20 {
+        let now_s = f64::from(tick) * 1e-3;
+        control.clear_events();
+        match tick {
+            5 => control.obey(Command::EngageOne(Side::Left), now_s),
+            10 => control.obey(Command::EngageOne(Side::Right), now_s),
+            _ => {}
+        }
+        worlds.write(now_s, &outputs);
+        let (next, [right, left]) = control.step(worlds.read(now_s), &Timing { now_s, ..Timing::default() });
+        assert!(left.is_none() && next[1] == Outputs::SAFE);
+        outputs = next;
+        states.push(right.unwrap().state);
+        refused.extend(refusals(&control));
+    }
+    assert_eq!(refused, [(Side::Left, Refusal::NoSuchArm)]);
+    assert_eq!((states[9], states[19]), (LoopState::Idle, LoopState::Engaged));
 }
 
 /// Changes the inputs of a side.

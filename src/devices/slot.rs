@@ -31,8 +31,8 @@ pub struct SlotReport {
 
 /// Time between two attempts to open the device, so that a device that is absent does not keep the bus busy.
 const RETRY: Duration = Duration::from_millis(500);
-/// Polling interval of the thread for closing, opening and ending; the loop determines the time of a wake-up. Hardly
-/// noticeable for a person, but long enough that the slots of a whole rig cost nothing.
+/// Interval at which the thread checks whether to open, close or end; waking it would cost the loop time. A person
+/// hardly notices the delay, and the slots of a whole rig cost nothing.
 const NAP: Duration = Duration::from_millis(20);
 
 /// The slot of one device. Dropping it closes the device and ends its thread.
@@ -219,7 +219,7 @@ impl<D: Device> SlotWorker<D> {
                 }
             }
         }
-        // A device that was lost in the last moment is closed on this thread, too.
+        // A device that was lost at the last moment is closed on this thread, too.
         while let Ok(lost) = self.take.pop() {
             drop(lost);
         }

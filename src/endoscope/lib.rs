@@ -1,12 +1,13 @@
 //! The endoscope image, from an address to pixels.
 //!
-//! A [`EndoscopeFeed`] takes an [`Address`] (motion JPEG over HTTP, H.264 over RTSP, a camera of this computer, a file, a
-//! folder), opens it on its own threads and reopens it when it is lost. It provides the newest image with its age, its
-//! rate and its status ([`FrameHealth`]). No thread waits for another: an image that was not taken is replaced by the next
-//! one. A recording receives all compressed images unmodified through a [`FrameQueue`]. [`Camera`] describes the pose and the
-//! lens of the endoscope; [`Checkerboard`] is the calibration target; [`time_code`], [`jpeg::encode`] and [`board::Portrait`]
-//! are for emulators and tests. Bad input (an image or a response that is truncated, too large, or of another format)
-//! is a [`EndoscopeError`] with its remedy, or a [`Damage`] of one image. Independent of loop, devices and window.
+//! An [`EndoscopeFeed`] takes an [`Address`] (motion JPEG over HTTP, H.264 over RTSP, a camera of this computer, a
+//! file, a folder), opens it on its own threads and reopens it when it is lost. It provides the newest image with its
+//! age, its rate and its status ([`FrameHealth`]). No thread waits for another: an image that was not taken is replaced
+//! by the next one. A recording receives all compressed images unmodified through a [`FrameQueue`]. [`Camera`]
+//! describes the pose and the lens of the endoscope; [`Checkerboard`] is the calibration target; [`time_code`],
+//! [`jpeg::encode`] and [`board::Portrait`] are for emulators and tests. Bad input (an image or a response that is
+//! truncated, too large, or of another format) is an [`EndoscopeError`] with its remedy, or a [`Damage`] of one image.
+//! Independent of loop, devices and window.
 //!
 //! ```
 //! use nima_endoscope::{Damage, jpeg};

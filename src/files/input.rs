@@ -31,7 +31,7 @@ pub fn read(path: &Path, max: u64) -> io::Result<Vec<u8>> {
         return Err(too_large(max));
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
-    // Limits the bytes that are read, because the file may grow meanwhile.
+    // Limits the bytes that are read, because the file may grow in the meantime.
     if file.take(max + 1).read_to_end(&mut bytes)? as u64 > max {
         return Err(too_large(max));
     }

@@ -37,7 +37,7 @@ impl<T> ToLoop<T> {
         self.end().push(value).map_err(|PushError::Full(value)| value)
     }
 
-    /// Returns whether the loop's end has gone.
+    /// Returns whether the loop's end was dropped.
     pub fn is_abandoned(&self) -> bool {
         self.end().is_abandoned()
     }
@@ -62,10 +62,11 @@ impl<T> FromLoop<T> {
         self.end().slots()
     }
 
-    /// Returns whether the loop's end has gone and nothing waits. Values that it sent before are returned first.
+    /// Returns whether the loop's end was dropped and no value is waiting. Values that it sent before are returned
+    /// first.
     pub fn has_ended(&self) -> bool {
         let end = self.end();
-        // Check in this order: once the loop's end has gone, no further value can arrive.
+        // Check in this order: once the loop's end is dropped, no further value can arrive.
         end.is_abandoned() && end.is_empty()
     }
 

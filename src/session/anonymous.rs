@@ -65,8 +65,8 @@ impl std::fmt::Debug for SessionFacts<'_> {
     }
 }
 
-/// Writes the impersonal part of the messages between these times (ns) into a new file and returns the number of
-/// messages written. Setting `asked` ends it early.
+/// Writes the messages between these times (ns), without identifying data, into a new file and returns their number.
+/// Setting `asked` stops the writing early.
 ///
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written. The caller must then delete the file.

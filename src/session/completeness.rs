@@ -24,7 +24,7 @@ pub fn missing(reader: &SessionReader) -> Vec<String> {
     check.finish()
 }
 
-/// Looks for what is missing message by message, for callers that have other work meanwhile.
+/// Finds missing parts message by message, for callers that have other work in between.
 pub struct CompletenessCheck<'a> {
     messages: ReaderMessages<'a>,
     begin_ns: u64,

@@ -71,7 +71,7 @@ impl MomentWriter {
         self.events.extend(events.iter().map(|event| (self.rows, *event)));
         // Times are rounded, so a microsecond less is due too. An earlier time belongs to a new session.
         let is_due = self.last_s.is_none_or(|last_s| t_s - last_s >= STEP_S - 1e-6 || t_s < last_s);
-        // Many events end a moment early, so that they can be sent.
+        // A large number of events ends a moment early, so that they can be sent.
         if (is_due || self.events.len() as u64 >= MAX) && self.rows < MAX {
             self.columns.next_row();
             MonitorRow { ticks: *ticks }.put(&mut self.columns);

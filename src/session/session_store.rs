@@ -96,7 +96,7 @@ impl SessionStore {
         for entry in entries {
             let path = entry?.path();
             if path.extension().is_some_and(|extension| extension == EXTENSION) {
-                // A file that is deleted meanwhile does not count.
+                // Skip a file that was deleted in the meantime.
                 let Ok(about) = fs::symlink_metadata(&path) else { continue };
                 if about.is_file() {
                     let kept = mark_of(&path).exists();

@@ -66,7 +66,7 @@ impl JournalOutcome {
 }
 
 /// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is the
-/// session's name in the table with the excerpt's origin. Setting `asked` ends it early.
+/// session's name in the table with the excerpt's origin. Setting `asked` stops the writing early.
 ///
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written. The caller must then delete the file.

@@ -13,7 +13,7 @@ use crate::{
     scene::{Scene, SceneHand as HandConfig},
 };
 
-// Physiological tremor of a hand has 8 to 12 Hz; three frequencies without a short common period do not repeat
+// Physiological tremor of a hand is at 8 to 12 Hz; three frequencies without a short common period do not repeat
 // visibly.
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 

@@ -20,7 +20,7 @@ pub struct Worlds {
     arms: [Option<World>; SIDES],
     playing: Option<TrainingTask>,
     period_s: f64,
-    /// How far the hands are ahead of the objects, s.
+    /// Time by which the hands are ahead of the objects, s.
     ahead_s: f64,
     /// Applied until the next write.
     outputs: [Outputs; SIDES],

@@ -31,7 +31,7 @@ struct Stamps(Arc<Mutex<Seen>>);
 struct Seen {
     started_ns: u64,
     clocks: usize,
-    /// How long after its time each message, and each tick, arrived, s.
+    /// Delay with which each message, and each tick, arrived, s.
     messages_s: Vec<f64>,
     ticks_s: Vec<f64>,
 }

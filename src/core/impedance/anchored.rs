@@ -234,7 +234,7 @@ impl Learner {
         self.tick < 3 * self.delay_ticks
     }
 
-    /// Returns the fraction of the reflection's error that counts against a correction.
+    /// Returns the factor for the reflection's error: below 1 it favours the reflection over a correction.
     fn caution(&self) -> f64 {
         match self.early() {
             true if (self.tick as f64) < FIRST_S * self.rate_hz => FIRST_CAUTION,

@@ -58,7 +58,7 @@ impl FollowerEnd for ImpedanceDegrees {
     fn take(&mut self, seen: &MethodInput<'_>, _parcel: &mut LinkPacket, report: &mut IdentificationReport) {
         let features = &seen.posture.features;
         if !seen.learn {
-            // The horizon keeps its delay line in step with time also while nothing is learnt.
+            // The horizon keeps its delay line in step with time even while nothing is learnt.
             self.horizon.rest(features, seen.force_n);
             return;
         }

@@ -80,7 +80,7 @@ impl Horizon {
     }
 
     fn keep(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
-        // The bound of the time of the prediction, not of its evaluation: the leader could not know the later one.
+        // Store the bound at the time of the prediction: the leader could not know a later one.
         self.past.push(HorizonHistory { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
     }
 
@@ -109,7 +109,7 @@ impl Horizon {
     fn judge(&mut self, features: &ImpedanceFeatures, force_n: Lanes) {
         // This runs before the tick is stored, so the newest entry is one tick old.
         let Some(then) = self.past.get(self.delay_ticks - 1) else { return };
-        // How many renewals lie between the prediction and now.
+        // Number of renewals between the prediction and now.
         let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;
         let Some(solution) = self.solutions.get(age) else { return };
         let change = force_n - then.force_n;
@@ -151,7 +151,7 @@ impl Horizon {
         if delay_ticks != self.delay_ticks {
             self.delay_ticks = delay_ticks;
             self.errors_n = [0.0; MOTION_COLUMNS + 1];
-            // A bound from another delay would not fit changes over this one.
+            // A bound learnt with another delay does not apply to this one.
             self.largest_change_n = 0.0;
         }
     }

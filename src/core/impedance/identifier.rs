@@ -20,8 +20,8 @@ const ERROR_MEMORY_S: f64 = 0.5;
 
 /// Identifies the impedance in a sliding window, one [`Sample`] per tick.
 ///
-/// Each tick produces a [`LinkPacket`] for the link and a [`IdentificationReport`] for the screen. Nothing is allocated after
-/// construction.
+/// Each tick produces a [`LinkPacket`] for the link and an [`IdentificationReport`] for the screen. Nothing is
+/// allocated after construction.
 ///
 /// The follower presses a spring of 100 N/m. 50 ms later its packet arrives at the leader, which renders the force for
 /// its own motion:
@@ -151,7 +151,7 @@ impl Identifier {
             good,
             usable,
             learn,
-            // This tick's packet is stored afterwards, so the one of `delay_ticks` ago is one place nearer.
+            // This tick's packet is stored afterwards, so the packet from `delay_ticks` ago is one place nearer.
             sent: self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel),
         };
         for follower in self.followers.each().filter(|follower| follower.serves(self.computed)) {

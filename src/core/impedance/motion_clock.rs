@@ -37,7 +37,7 @@ impl MotionClock {
         // By its own pace, so that a rest does not shrink the largest motion and make tremor look like motion.
         let fade = 1.0 - self.pace / (LARGEST_S * self.rate_hz);
         self.largest_m = (self.largest_m * fade).settled().zip(size_m, f64::max);
-        // A zero maximum gives a fraction of zero, hence the pace of rest.
+        // A zero maximum gives a fraction of zero, hence the pace at rest.
         let fractions = size_m * (self.largest_m * FULL).recip_or_zero();
         let pace = fractions.0.into_iter().fold(REST, f64::max).min(1.0);
         // Rises at once and falls slowly: see `HOLD_S`.

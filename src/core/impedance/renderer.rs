@@ -76,7 +76,7 @@ impl Renderer {
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
-            // The leaders keep a time without a force, so that their delay lines stay in step.
+            // The leaders store an entry even without a force, so that their delay lines stay in step with time.
             self.leaders.each().for_each(|leader| leader.keep(&[None; SLOTS], 0.0));
             return RenderedForces::default();
         };

@@ -36,8 +36,8 @@ const MIN_MARGIN_RAD: f64 = 0.1;
 /// See [`MIN_MARGIN_RAD`].
 /// The threshold of damping in the loop (`DAMPED_BELOW`): beyond it the loop follows exactly.
 const MIN_DEXTERITY: f64 = 0.05;
-/// Period of the test motions, s: longer than the loop's period to save time, still short enough to keep the shaft in
-/// the trocar.
+/// Period of the test motions, s: longer than the loop's period to save time, but short enough to keep the shaft in the
+/// trocar.
 const TRY_PERIOD_S: f64 = 0.004;
 /// Distance from the goal at which the tip has arrived, m.
 /// A tenth of a millimetre: below the calibration errors of an arm, above the rest of a numerical approach.

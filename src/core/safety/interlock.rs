@@ -47,7 +47,7 @@ pub struct Permits {
 impl<F: Copy> InterlockState<F> {
     pub const fn permits(self) -> Permits {
         Permits {
-            // A clutched follower rests at its place with its drives on.
+            // A clutched follower stays in place with its drives on.
             drives: matches!(self, Self::Ready | Self::Engaged | Self::Clutched),
             coupled: matches!(self, Self::Engaged),
         }

@@ -205,7 +205,7 @@ fn centres(white: &[f32], width: usize, seed: u64) -> Vec<f32> {
             counts[k] += 1.0;
             sums[k * width..(k + 1) * width].iter_mut().zip(*row).for_each(|(sum, x)| *sum += x);
         }
-        // A centre that attracted no row stays at its place.
+        // A centre that attracted no row stays in place.
         for (k, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             for i in k * width..(k + 1) * width {
                 centres[i] = sums[i] / count;

@@ -50,7 +50,8 @@ impl Estimator {
             return refused;
         }
         let outside = model.doubt.outside(features, scratch).max(moved);
-        // The geometry of the inputs decides before the members run: it is the trust in their nonlinear part.
+        // The distance of the inputs from the training data is known before the members run; it sets the trust in their
+        // nonlinear part.
         let answer = model.network.answer(features, trust(outside));
         let outputs = model.outputs.len();
         let score = outside.max(model.doubt.disagreement(&answer.spread[..outputs]));

@@ -8,9 +8,9 @@
 //! `presliding` is the stop operator of the position over its width, -1 to 1: +1 slides forwards, -1 backwards, values
 //! in between occur while the motion reverses. `midline` is the load without its friction: the difference between the
 //! loads of the two directions (the swing) is measured at every reversal, assuming that the load at the far end is
-//! constant meanwhile, and half of it is subtracted. Until the first reversal the mean swing of the training data is
-//! used, which is the second number in the name. The midline is smoothed over four widths of travel and is held during
-//! a reversal. It follows a slow load; use the load itself as another input for fast changes.
+//! constant in the meantime, and half of it is subtracted. Until the first reversal the mean swing of the training data
+//! is used, which is the second number in the name. The midline is smoothed over four widths of travel and is held
+//! during a reversal. It follows a slow load; use the load itself as another input for fast changes.
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct DerivedInput {

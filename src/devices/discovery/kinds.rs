@@ -182,7 +182,7 @@ fn external(name: &str, kind: external::ExternalKind, place: &str) -> Result<Box
     Ok(super::probes::external(name, kind, settings))
 }
 
-/// Returns the probe for `KIND` or `KIND=PLACE`, named after the whole text.
+/// Returns the probe for `KIND` or `KIND=PLACE`; its name is the whole text.
 ///
 /// # Errors
 /// [`DeviceError::Setting`] if the kind is unknown or its address invalid.

@@ -30,7 +30,7 @@ impl Cycle {
     /// Records that a request with this number was sent.
     pub(super) fn asked(&mut self, number: u16, health: &mut Health) {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
-        // The place is needed again, so its request will not be answered any more.
+        // The place is being reused, so a request that still waits there counts as lost.
         if place.1 == CycleResult::Waiting {
             health.lost += 1;
         }

@@ -130,7 +130,7 @@ impl Serial {
     fn trouble(port: &str, error: &serialport::Error) -> DeviceError {
         let place = port.to_owned();
         match error.kind() {
-            // The library reports a port that another program holds like a missing one.
+            // The library reports a port that another program holds as if it were missing.
             serialport::ErrorKind::NoDevice if Path::new(port).exists() => DeviceError::Busy { place },
             serialport::ErrorKind::NoDevice => DeviceError::Absent { place },
             serialport::ErrorKind::Io(kind) => {

@@ -209,7 +209,7 @@ impl NetworkStream {
         let allowed = self.bucket.level(now_s) as usize;
         let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
         let is_limited = room < DATAGRAM_MAX - frame;
-        // At least all held payloads are sent, because they have not been sent at all.
+        // Send at least all held payloads, because they have not been sent before.
         let (loss, again) = self.reported_loss;
         let overtaken = self.reported_overtaken;
         let wanted = copies_for(loss + overtaken, f64::max(again, loss + overtaken)).max(self.waiting);

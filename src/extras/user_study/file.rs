@@ -108,7 +108,7 @@ pub struct Practice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NotReached {
-    /// The trials follow nevertheless.
+    /// The trials follow regardless.
     #[default]
     GoOn,
     /// The participant is excluded.

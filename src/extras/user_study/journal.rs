@@ -142,7 +142,7 @@ impl Chain {
     fn link(&self, mut entry: String) -> (String, Self) {
         let Some(before) = &self.0 else { return (entry + "\n", Self::NONE) };
         let hash = Self::after(before, &entry);
-        // Into the object, which ends with a brace.
+        // Insert the chain into the object, before its closing brace.
         entry.pop();
         (format!("{entry}{CHAIN}{hash}\"}}\n"), Self(Some(hash)))
     }

@@ -4,9 +4,9 @@
 //! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are
 //! models. SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike in the
 //! simulated world of the scenes, the hand can open here and release the handle. Ticks arrive at the times of the
-//! trial's clock; meanwhile hand, handle and follower move for the true time, with the last force and command held. As
-//! in the loop, identification, rendering and lag get evenly spaced values: each deadline that has passed gets the
-//! value interpolated between two ticks.
+//! trial's clock; between ticks, hand, handle and follower move for the true time, with the last force and command
+//! held. As in the loop, identification, rendering and lag get evenly spaced values: each deadline that has passed gets
+//! the value interpolated between two ticks.
 
 use std::f64::consts::TAU;
 

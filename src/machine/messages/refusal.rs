@@ -22,7 +22,7 @@ pub enum Refusal {
     DrivesOff,
     /// The arm was still moving at the time limit.
     Moving,
-    /// No hand held the handle until the time limit.
+    /// No hand held the handle within the time limit.
     HandAbsent,
     /// The clutch was still pressed at the time limit.
     ClutchPressed,

@@ -19,7 +19,7 @@ pub(super) enum Intent {
 }
 
 impl Intent {
-    // Two bits in a message: append nothing without a new format.
+    // Stored in two bits of a message, so a further intent needs a new format.
     const ALL: [Self; 4] = [Self::Rest, Self::Hold, Self::Follow, Self::Stop];
 }
 

@@ -87,7 +87,7 @@ impl LeaderThere {
         let over_s = before.map_or(0.0, |before| now.t_s - before.t_s);
         for (side, hand) in self.hands.iter_mut().enumerate() {
             match now.sides[side].zip(before.and_then(|before| before.sides[side])) {
-                // Only while both messages follow: the way between two other states is not a motion of the hand.
+                // Only if both messages command following; otherwise the difference is not a motion of the hand.
                 Some((now, before)) if [now.intent, before.intent] == [Intent::Follow; 2] => {
                     hand.report(&(now.tip_m - before.tip_m), over_s);
                 }

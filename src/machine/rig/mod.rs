@@ -135,9 +135,9 @@ impl ViewOrientation {
     }
 }
 
-/// Tip position that the arm was commanded, m, within the limits of joints and trocar, so it may be behind the command of
-/// the hand. `None` if the arm has no joints here or is at rest, and if the plan waits for a blocked arm: then the hand's
-/// command is what the arm should follow.
+/// Tip position commanded to the arm, m, within the limits of joints and trocar, so it may lag behind the hand's
+/// command. `None` if the arm has no joints here or is at rest, and if the plan waits for a blocked arm: then the
+/// hand's command is what the arm should follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlannedTip(pub Option<Vector3<f64>>);
 
@@ -156,7 +156,7 @@ pub struct Inputs {
     /// Force that opens the jaws, N at the finger, if known.
     pub grip_n: Option<f64>,
     pub tip_m: Vector3<f64>,
-    /// Tip position that the arm was commanded one tick ago.
+    /// Tip position commanded to the arm one tick ago.
     pub planned: PlannedTip,
     /// Orientation of the instrument's jaws, if known.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,

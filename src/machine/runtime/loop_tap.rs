@@ -232,7 +232,7 @@ impl CalibrationFiler {
     /// Passes on these calibrations; returns their number.
     pub(super) fn file(&self, calibrations: &Calibrations) -> u64 {
         let number = self.next.fetch_add(1, Ordering::Relaxed);
-        // Fails only if the reader of the tap has gone.
+        // Fails only if the reader of the tap was dropped.
         self.calibrations.send((number, calibrations.clone())).ok();
         number
     }

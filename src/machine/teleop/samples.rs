@@ -7,7 +7,7 @@ use crate::rig::Inputs;
 pub(super) const SILENT_AFTER_S: f64 = 0.020;
 /// Number of missing samples that counts as a fault; each arriving sample compensates for [`FORGIVEN`] missing ones.
 const TOO_MANY: f64 = 8.0;
-// A missing sample per five arriving ones never adds up to a fault.
+// One missing sample for every five that arrive never adds up to a fault.
 const FORGIVEN: f64 = 0.2;
 
 #[derive(Clone, Debug)]

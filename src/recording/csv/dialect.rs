@@ -274,7 +274,7 @@ impl<R: Read> TextReader<R> {
             [0xEF, 0xBB, 0xBF, ..] => (None, 3),
             [0xFF, 0xFE, ..] => (Some(false), 2),
             [0xFE, 0xFF, ..] => (Some(true), 2),
-            // Without a mark: letters of a table have a zero byte in UTF-16.
+            // Without a byte order mark: the letters of a table have a zero byte in UTF-16.
             [1..=255, 0, 1..=255, 0] => (Some(false), 0),
             [0, 1..=255, 0, 1..=255] => (Some(true), 0),
             _ => (None, 0),
@@ -312,7 +312,7 @@ impl<R: Read> Read for TextReader<R> {
                 return self.source.read(buffer);
             }
             let mut bytes = Vec::new();
-            // An even number of bytes, unless the file ends within a letter.
+            // An even number of bytes, unless the file ends within a character.
             if (&mut self.source).take(8192).read_to_end(&mut bytes)? == 0 {
                 return Ok(0);
             }

@@ -1,8 +1,8 @@
 //! The journal of a session: the messages from which the loop is replayed.
 //!
 //! Each message carries the journal's version, its number in the journal and its own CRC-32, so that a lost or changed
-//! message is always detected and located. A [`JournalStart`] comes first, an [`JournalEnd`] last if the recording was closed;
-//! between them are [`JournalBlock`]s of ticks, and calibrations before the block that activates them.
+//! message is always detected and located. A [`JournalStart`] comes first, a [`JournalEnd`] last if the recording was
+//! closed; between them are [`JournalBlock`]s of ticks, and calibrations before the block that activates them.
 
 mod block;
 mod parts;

@@ -17,8 +17,8 @@ use nima_machine::{
 
 use super::{Journal, JournalGap, NumberedMessage, ReplayError, ReplayMachine, ReplayStep, is_from};
 
-/// The changed settings; `None` leaves a setting as recorded. A changed setting stays so: commands that would set it
-/// are ignored.
+/// The changed settings; `None` leaves a setting as recorded. Recorded commands that would set a changed setting are
+/// ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WhatIfChange {
     pub mode: Option<Mode>,

@@ -88,7 +88,7 @@ pub struct SessionFigures {
 pub struct Stall {
     /// Last tick before it, s since the start of the session.
     pub from_s: f64,
-    /// How long the loop was silent, s.
+    /// Time for which the loop was silent, s.
     pub length_s: f64,
 }
 

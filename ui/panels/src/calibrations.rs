@@ -201,7 +201,7 @@ fn source_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     let source = tick.map_or(ForceSource::NoSample, |tick| tick.force.source);
     let sure = matches!(source, ForceSource::AtTip | ForceSource::Network);
     let (what, colour) = if sure { (Sign::Disc, theme::now().engaged) } else { (Sign::Triangle, theme::now().text) };
-    // The room of two lines: a reason may need them, and must not move the buttons when it comes.
+    // Reserve two lines: a reason may need them, and must not move the buttons when it appears.
     ui.scope(|ui| {
         ui.set_min_height(SOURCE_HEIGHT);
         ui.horizontal(|ui| {

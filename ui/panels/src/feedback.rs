@@ -18,7 +18,8 @@ use crate::panel::{Panel, PanelContext, PanelSize};
 
 use super::modes::modes_ui;
 
-/// How long a control shows the requested value before it shows the active value again, s: the gain ramps at 2 per second.
+/// Time for which a control shows the requested value before it shows the active value again, s: the gain ramps at 2
+/// per second.
 const ASKED_SHOWN_S: f64 = 1.6;
 
 /// A requested value and the time of the request (s on the window's clock).

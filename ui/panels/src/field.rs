@@ -15,7 +15,8 @@ impl Panel for FieldPanel {
     const SIZE: PanelSize = PanelSize::filling([160.0, 120.0]);
 
     fn ui(&mut self, ui: &mut Ui, at: &mut PanelContext<'_>) {
-        // Its camera turns during playback, but with a page that has the machine its mouse control must rest too.
+        // The camera can be turned during playback, but while a page is using the machine, mouse control is disabled
+        // too.
         ui.add_enabled_ui(!at.is_locked, |ui| scene_ui(ui, at.live, &mut at.panels.scene, at.outbox));
     }
 }

@@ -26,7 +26,7 @@ use super::traces_state::stepped;
 
 /// Height of the caption.
 const CAPTION: f32 = 40.0;
-/// Room of the legend at the upper left, in which no number of an axis is drawn.
+/// Space for the legend at the upper left, in which no number of an axis is drawn.
 const LEGEND: Vec2 = vec2(190.0, 50.0);
 /// Smallest radius of the view, N.
 const MIN_N: f32 = 0.75;

@@ -63,7 +63,7 @@ pub struct PanelContext<'a> {
     pub active: &'a ActiveCalibrations,
     pub outbox: &'a mut Outbox,
     pub wishes: &'a mut Wishes,
-    /// Another page of the window has the machine: no control of a panel acts on it.
+    /// Another page of the window is using the machine, so the controls of the panels are disabled.
     pub is_locked: bool,
 }
 

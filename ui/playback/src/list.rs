@@ -175,7 +175,7 @@ impl SessionList {
             let open = ui.add_enabled(folder.is_some(), open);
             let pressed = open.on_disabled_hover_text(text::playback::EMPTY).clicked();
             if let (true, Some(folder)) = (pressed, folder) {
-                // The program may run for long. If no thread can be created, nothing opens.
+                // The program may run for a long time. If no thread can be created, nothing opens.
                 thread::Builder::new().name("folder".to_owned()).spawn(move || opener::open(&folder)).ok();
             }
             if let Some(recorded) = recorded {

@@ -42,7 +42,7 @@ pub struct SteadyButton<'a> {
     pub meaning: &'a str,
     /// The condition, or the reason why it is not met.
     pub may: Result<(), &'a str>,
-    /// How long a click waits for the condition, s; 0 for a button that moves the machine.
+    /// Maximum time that a click waits for the condition, s; 0 for a button that moves the machine.
     pub waits_s: f64,
 }
 

@@ -46,7 +46,7 @@ impl Help {
             ui.set_min_width(ui.available_width());
             ui.label(RichText::new(heading.get()).font(theme::strong(18.0)));
             let font = theme::regular(15.0);
-            // The room of the longest text, so that the buttons stay under the pointer.
+            // Reserve space for the longest text, so that the buttons stay under the pointer.
             let height = |words: &str| {
                 ui.painter().layout(words.to_owned(), font.clone(), Color32::WHITE, ui.available_width()).size().y
             };

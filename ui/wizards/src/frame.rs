@@ -161,7 +161,7 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
         if save_card(ui, of_sensor, proof.as_deref(), wizard.frame_mut()) {
             saving = wizard.made(binding);
         }
-        // Without a proof, the file names the person who accepts the result.
+        // Without proof, the file names the person who accepts the result.
         if let (None, Some(judgement)) = (proof, saving.as_mut().and_then(SaveRequest::judgement_mut)) {
             wizard.frame_mut().override_in(judgement);
         }
@@ -233,7 +233,7 @@ fn steps_ui(ui: &mut Ui, steps: &[WizardStep], now: usize, going_on: &GoingOn) -
         if ui.button(text::wizards::START_OVER).on_hover_text(text::wizards::START_OVER_HOVER).clicked() {
             wish = Some(WizardRequest::StartOver);
         }
-        // At the end of the row, so that nothing moves when it comes.
+        // At the end of the row, so that nothing moves when it appears.
         if !last && !going_on.is_done && going_on.may.is_ok() {
             let anyway = ui.button(text::wizards::ANYWAY).on_hover_text(text::wizards::ANYWAY_HOVER);
             if anyway.clicked() {

@@ -49,7 +49,7 @@ fn rotation(angles: &Vector3<f64>) -> Rotation3<f64> {
 fn simplex(start: Vector3<f64>, cost: &impl Fn(&Vector3<f64>) -> f64) -> EulerVertex {
     let at = |point: Vector3<f64>| (point, cost(&point));
     let mut vertices =
-        // Half a radian: large enough to leave a flat start, small against the distance of the starts.
+        // Half a radian: large enough to leave a flat start, small compared with the distance between the starts.
         [at(start), at(start + Vector3::x() * 0.5), at(start + Vector3::y() * 0.5), at(start + Vector3::z() * 0.5)];
     for _ in 0..MAX_STEPS {
         vertices.sort_by(|a, b| a.1.total_cmp(&b.1));

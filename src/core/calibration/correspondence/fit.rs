@@ -163,7 +163,7 @@ fn judge(
     mistaken: Option<&'static str>,
     limits: &CorrespondenceLimits,
 ) -> (Verdict, String) {
-    // First, because every later reason would send the operator to push again with the same wrong input.
+    // Checked first, because every later reason would make the operator push again with the same wrong input.
     if let Some(reason) = mistaken {
         return (Verdict::PoorData, reason.to_owned());
     }
@@ -200,7 +200,7 @@ fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &Correspon
         return Some(format!("only {used} pushes reach {min_n} N, {needed} are required; push more often and harder"));
     }
     let agree = used - report.outliers.len();
-    // With many outliers the reason is the contradiction, which is reported further below.
+    // With many outliers, `disagreement` reports a more specific reason.
     if agree < limits.min_pairs && fraction(report.outliers.len(), used) <= limits.outlier_fraction {
         return Some(format!("only {agree} pushes agree, {} are required; push more often", limits.min_pairs));
     }
@@ -230,7 +230,7 @@ fn disagreement(
     if fraction(outliers, used) > limits.outlier_fraction {
         return Some(format!("{outliers} of {used} pushes contradict the others; repeat them"));
     }
-    // Before the errors: gain and offset explain them, and name what to do.
+    // Checked before the errors, because a wrong gain or offset explains them and has a remedy.
     if let Some(diagnosis) = &solution.diagnosis {
         if diagnosis.gain_is_off(limits.gain_error) {
             return Some(gain_text(diagnosis.gain));

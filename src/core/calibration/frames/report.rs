@@ -214,7 +214,7 @@ pub trait Calibration {
         }
         check(samples, &self.needs())?;
         let given = self.attempt(samples);
-        // Data that fit only an impossible geometry have already revealed the mistake.
+        // If the data fit only an impossible geometry, the first attempt has already found the mistake.
         let fits = given.found.is_some() && matches!(given.cause, FrameCause::Mistake { .. });
         if given.verdict == Verdict::Accepted || fits {
             return Ok(given);

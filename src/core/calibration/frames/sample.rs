@@ -70,7 +70,7 @@ impl FrameSample {
     ) -> Option<Self> {
         let gravity::Orientation::Arm(world_from_s1) = pose.orientation else { return None };
         let base_from_flange = world_from_base.inverse() * world_from_s1 * flange_from_s1.inverse();
-        // A gravity pose has no position, and only its rotation is used.
+        // A gravity pose has no position; only its rotation is used.
         let pose_m = Isometry3::from_parts(Vector3::zeros().into(), base_from_flange);
         Some(Self { base_from_flange: Some(pose_m), wrench: Some(pose.wrench), ..Self::default() })
     }

@@ -71,7 +71,7 @@ impl ResidualDrift {
 
     /// Advances a tick without a measurement.
     pub(super) fn hold(&mut self) {
-        // The last residual stands for the missing one, so that the index stays a time.
+        // Repeat the last residual for the missing one, so that each index corresponds to a time.
         let last_n = self.residuals_n.get(0).copied().unwrap_or_default();
         self.residuals_n.push(last_n);
     }

@@ -234,7 +234,7 @@ impl Learner {
     /// Continues without learning: the learnt parameters stay active.
     fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
-        // Also while resting one entry per renewal is stored, so that an index stays a time.
+        // Store one entry per renewal even at rest, so that each index corresponds to a time.
         for ridge in (0..self.renewals.ridges).filter(|ridge| self.renewals.is_turn_of(*ridge)) {
             for expert in self.experts.iter_mut().filter(|expert| expert.ridge == ridge) {
                 expert.past.push(expert.parameters);

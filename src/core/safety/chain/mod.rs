@@ -135,7 +135,7 @@ impl<const D: usize> SafetyChain<D> {
 
     /// Sets the dead band, m/s, clamped to 0 to 0.1; NaN is ignored.
     pub fn set_dead_band(&mut self, threshold_m_s: f64) {
-        // The default of a NaN would be a surprise while engaged: the current value stays.
+        // Keep the current value: a default instead of NaN would be a surprise while engaged.
         if !threshold_m_s.is_nan() {
             self.settings.dead_band_m_s = threshold_m_s.clamp(DEAD_BAND_M_S.min, DEAD_BAND_M_S.max);
             self.dead_band.threshold_m_s = self.settings.dead_band_m_s;
@@ -219,8 +219,8 @@ impl<const D: usize> SafetyChain<D> {
     fn through(&mut self, request: &ForceRequest<D>, dt_s: f64, report: &mut GateReport) -> SVector<f64, D> {
         let admitted = admitted(request.force_n);
         let (fresh, age) = self.age.fraction(request.age_s);
-        // The ramps of gain and dead band advance also while no force is permitted, so that they have settled on
-        // engaging.
+        // The ramps of gain and dead band advance even while no force is permitted, so that they have settled before
+        // the next engagement.
         let (gain, ramp) = self.gain.step(dt_s);
         report.gain = gain;
         report.note(Gate::Validity, admitted.err().unwrap_or_default());

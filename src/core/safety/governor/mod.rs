@@ -312,7 +312,8 @@ impl<const D: usize> Governor<D> {
         since.pulls_s =
             if pulls && ripe { since.pulls_s + looked_s } else { (since.pulls_s - 2.0 * looked_s).max(0.0) };
         since.coasts_s = if !pulls && ripe { since.coasts_s + looked_s } else { 0.0 };
-        // Under a third of the friction a free handle stays where it is, so its rest says nothing about a force.
+        // A force below a third of the friction does not move a free handle, so a handle at rest says nothing about a
+        // hand.
         let quiet = self.withheld >= 1.0 && self.applied_n.norm() < 0.3 * COULOMB_N;
         let moved_m = (past.position_m - self.rest_m).norm();
         if !quiet || moved_m > STIR_M + 2.0 * self.handle.step_m {
@@ -323,7 +324,7 @@ impl<const D: usize> Governor<D> {
             self.rest_m = past.position_m;
             since.rests_s = 0.0;
         } else if moved_m > 1.5 * self.handle.step_m {
-            // Moved by one to two steps: neither rest nor a hand; the time of rest waits.
+            // A motion of one to two steps is neither rest nor a hand, so the time at rest does not increase.
             since.rests_s = since.rests_s.min(RESTED_S + looked_s);
         } else {
             since.rests_s += looked_s;

@@ -1,7 +1,7 @@
 //! The handle's last readings with the force that was applied between them, at true times.
 //!
-//! A late tick changes only the spacing of the samples. From the model `m x'' + c x' = F + f_hand` follows that
-//! `y = m x + c ∫x - ∬F` has the hand's force as its second derivative, whatever `F` did in between. A [`ObserverHistory`] is this `y`, and
+//! A late tick changes only the spacing of the samples. By the model `m x'' + c x' = F + f_hand`, the second derivative
+//! of `y = m x + c ∫x - ∬F` is the hand's force, whatever `F` did in between. An [`ObserverHistory`] is this `y`, and
 //! [`fit`](super::fit) takes the derivative.
 
 use nalgebra::SVector;

@@ -208,7 +208,7 @@ impl PlausibilityChannel {
 
     fn rest(&mut self, t_s: f64, around: &Around) -> bool {
         let stood_s = t_s - self.since_s;
-        // A number that rests long before it was lively is slow by nature (40 Hz data), so the clock starts again.
+        // A long rest before the number became lively shows a slow source (40 Hz data), so the clock starts again.
         if !self.is_lively() {
             if stood_s > RESTLESS_S && self.repeats > 1 {
                 self.begin(t_s);
@@ -228,7 +228,7 @@ impl PlausibilityChannel {
 
     fn change(&mut self, now: f64, t_s: f64, around: &Around) {
         let rested_s = self.t_s - self.since_s;
-        // From the last change, as opposed to `rested_s`, which ends at the last reading.
+        // `dt_s` ends now; `rested_s` ends at the last reading before the change.
         let dt_s = t_s - self.since_s;
         if rested_s > RESTLESS_S && self.repeats > 1 {
             self.begin(t_s);
@@ -252,7 +252,7 @@ impl PlausibilityChannel {
     fn is_saturated(&mut self, now: f64, t_s: f64) -> bool {
         let [high, low] = &mut self.extremes;
         self.seen[0].1 |= high.look(now) | low.look(-now);
-        // A value that rests at an extreme is judged by its rest, not by its hits.
+        // More hits than repeats are required: a value that stays at an extreme is judged by `rest`.
         let often = HITS.max(self.repeats + 2);
         let hit = (high.is_at(now) && high.hits >= often) || (low.is_at(-now) && low.hits >= often);
         hit && t_s - self.coarse_s >= LIVELY_S && self.is_lively() && self.is_noisy()

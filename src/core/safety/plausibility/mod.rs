@@ -43,8 +43,8 @@ const POSITION_SLACK_M: f64 = 2e-3;
 /// Maximum change of the force of a resting tip between two samples, N: nine standard deviations of the noisiest sensor
 /// here.
 const FORCE_SLACK_N: f64 = 0.5;
-/// Additional change of the force per metre of tip travel, N/m: fifteen times soft tissue. With the slack it admits 15
-/// kN/m at 50 mm/s.
+/// Additional change of the force per metre of tip travel, N/m: fifteen times soft tissue. Together with
+/// [`FORCE_SLACK_N`] it permits 15 kN/m at 50 mm/s.
 const STIFFEST_N_M: f64 = 5e3;
 /// Time for which the filters behind a force settle after a start or a gap, s: until then the force may jump.
 const SETTLE_S: f64 = 0.05;
@@ -120,8 +120,8 @@ pub struct PlausibilityInput {
     pub tip_m: Vector3<f64>,
     /// Position of the handle, m (in its device's axes).
     pub hand_m: Vector3<f64>,
-    /// Tip position that the arm was commanded one tick ago, m: its plan if that is known, otherwise the command of the
-    /// hand. `None` while the tip is at rest.
+    /// Tip position commanded to the arm one tick ago, m: its plan if that is known, otherwise the hand's command.
+    /// `None` while the tip is at rest.
     pub command_m: Option<Vector3<f64>>,
     /// Commanded force on the hand one tick ago, N.
     pub hand_force_n: Vector3<f64>,
@@ -388,7 +388,7 @@ fn load_of(channels: &[f64; CHANNELS]) -> SVector<f64, LOADS> {
 
 /// Returns two axes of a frame, which determine the frame.
 fn axes(turn: &UnitQuaternion<f64>) -> SVector<f64, 6> {
-    // The third axis follows from the first two, so a third one would add no information.
+    // The third axis follows from the other two, so it would add no information.
     let x = turn * Vector3::x();
     let z = turn * Vector3::z();
     SVector::from([x.x, x.y, x.z, z.x, z.y, z.z])

@@ -228,7 +228,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
     fn put_commands(&mut self) {
         match self.torque {
             Torque::Wanted if self.health.standing == ConnectionState::Connected => {
-                // The goal is the present position, so that switching on the torque does not move the instrument.
+                // The goal is the current position, so that switching on the torque does not move the instrument.
                 let here = std::array::from_fn(|index| {
                     let (low, high) = self.servos[index].limits_ticks;
                     f64::from(self.motions[index].position).clamp(low, high) as i32
@@ -257,7 +257,7 @@ impl<T: ByteStream> DynamixelDriver<T> {
     }
 
     pub(super) fn put_torque_off(&mut self) {
-        // The torque first: if the second packet is lost, the servos are off nevertheless.
+        // Switch the torque off first: if the second packet is lost, the servos are still off.
         self.put_all(table::TORQUE_ENABLE.address, [[0]; SERVOS]);
         self.put_all(table::BUS_WATCHDOG.address, [[0]; SERVOS]);
     }

@@ -26,7 +26,7 @@ const TICK: Duration = Duration::from_millis(1);
 
 impl KinovaDriver {
     pub(super) fn leave(&mut self) {
-        // The twist first: it belongs to single-level servoing, in which there is nothing to brake.
+        // Release an active twist first: it occurs only in single-level servoing, which needs no braking afterwards.
         if self.twist.active {
             self.release_twist();
         }

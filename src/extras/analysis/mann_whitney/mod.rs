@@ -19,8 +19,8 @@ const MAX_DIFFERENCES: usize = 4_000_000;
 /// Result of the Mann-Whitney test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MannWhitney {
-    /// Number of pairs of a value of the first group and one of the second in which the first is greater, ties counting
-    /// half; R's W.
+    /// Number of pairs, with one value from each group, in which the value of the first group is greater; a tie counts
+    /// half. R's W.
     pub u: f64,
     /// Number of pairs in which the second value is greater.
     pub other_u: f64,

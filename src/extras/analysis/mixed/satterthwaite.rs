@@ -33,8 +33,8 @@ impl Precision {
             }
             [2.0 * variance / determinant, -2.0 * both / determinant, 2.0 * ratio / determinant]
         } else {
-            // At the boundary the ratio is treated as known, like in lmerTest, whose parameter (its root) does not
-            // change there.
+            // At the boundary the ratio is treated as known, as in lmerTest, where its derivative with respect to the
+            // parameter (its root) is zero.
             [0.0, 0.0, 2.0 / variance]
         };
         Ok(Self { covariance, residual_variance, by_ratio, variances })

@@ -18,7 +18,8 @@ use crate::{
     socket::Socket,
 };
 
-/// Exchanges per second, in total and for one address, and how many may come at once. Each is one guess of the code.
+/// Maximum exchanges per second, in total and for one address, and the maximum burst. Each exchange is one guess of the
+/// code.
 const PER_S: f64 = 8.0;
 const PER_S_ADDRESS: f64 = 1.0;
 const AT_ONCE: f64 = 4.0;

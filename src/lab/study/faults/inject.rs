@@ -145,7 +145,7 @@ impl Faulty {
         self.block.get(place % FaultKind::BLOCK).copied().unwrap_or(*inputs)
     }
 
-    /// Returns neighbouring samples swapped: alternately the current sample and the one before the previous.
+    /// Swaps neighbouring samples: returns the current sample and the one before the previous in turn.
     fn reordered(&self, inputs: &Inputs, before: &Inputs) -> SensedForce {
         let two_ago = self.late.iter().rev().nth(2).unwrap_or(before);
         match self.age % 2 {

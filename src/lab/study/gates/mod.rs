@@ -49,7 +49,7 @@ pub struct GateStudyReport {
     pub seed: u64,
     /// Violated limits; all must be 0.
     pub breaches: Breaches,
-    /// How often each gate acted, in the order of the gates.
+    /// Number of actions of each gate, in the order of the gates.
     pub acted: Vec<GateActions>,
     /// Number of forces other than zero that left a chain.
     pub forces: u64,

@@ -103,8 +103,8 @@ pub struct SweepStudy {
     pub sources: Vec<SourceFigures>,
 }
 
-/// Returns the measures all points of `plan` on all `sources`. `progress` is called with the number of points done and
-/// their total; setting `cancel` stops the sweep within milliseconds.
+/// Measures all points of `plan` on all `sources`. `progress` is called with the number of points done and their total;
+/// setting `cancel` stops the sweep within milliseconds.
 ///
 /// # Errors
 /// [`SweepError`] if the sweep is cancelled or no point can be measured on a source.

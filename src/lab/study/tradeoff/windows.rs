@@ -47,7 +47,7 @@ impl WindowsRows {
     }
 }
 
-/// Returns the measures `solver` at about `instants` instants from `from_s` on.
+/// Measures `solver` at about `instants` instants from `from_s` on.
 pub(super) fn measure(
     samples: &[Sample],
     settings: &ImpedanceSettings,

@@ -125,7 +125,7 @@ impl SideReadings {
         };
         let inputs = match delivering.follower {
             Some(is_there) => self.follower_inputs(now_s, jaws, shared).filter(|_| is_there)?,
-            // A rig without a follower's half has no drives here that could be off.
+            // Without the follower's half, there are no drives here that could be off.
             None => Inputs { powered: true, ..Inputs::NOTHING },
         };
         let Some(hand) = led else { return Some(inputs) };
@@ -154,7 +154,7 @@ impl SideReadings {
         let force = self.force?;
         let pose = self.pose.as_ref()?;
         let age_s = [joints.arrival_s, force.arrival_s].map(|at_s| now_s - at_s).into_iter().fold(0.0, f64::max);
-        // The joints and the force have to be of the same moment, so the older one decides.
+        // The joints and the force must be from the same moment, so the older one decides.
         if age_s > OLDEST_S {
             return None;
         }

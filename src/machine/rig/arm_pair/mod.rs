@@ -193,7 +193,7 @@ impl ArmPair {
             self.driven = outputs.drives;
             self.switch_drives(outputs.drives);
         }
-        // Also while the drives are off and the force is zero: this keeps the handle in step with the loop.
+        // Even while the drives are off and the force is zero, this keeps the handle in step with the loop.
         if let Some(handle) = self.handle.as_mut().and_then(DeviceSlot::device) {
             let (hand_n, gripper_n) =
                 if outputs.drives { (outputs.hand_force_n, outputs.gripper_n) } else { (Vector3::zeros(), 0.0) };

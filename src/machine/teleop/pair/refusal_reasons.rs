@@ -66,7 +66,7 @@ impl<L: Link> Pair<L> {
 
     /// Returns the condition for which an engagement in progress is waiting.
     pub(super) fn waits_for(&self, seen: InterlockInput, inputs: Option<&Inputs>) -> Refusal {
-        // The order of the checks in `step_interlock`, so that the operator hears the first one that is missing.
+        // Same order as the checks in `step_interlock`, so that the first unmet condition is reported.
         if !seen.powered {
             Refusal::DrivesOff
         } else if inputs.is_none_or(|inputs| inputs.view == ViewOrientation::Unseen) {

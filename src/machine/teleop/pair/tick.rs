@@ -150,7 +150,7 @@ impl<L: Link> Pair<L> {
             tip_m: inputs.tip_m,
             hand_m: inputs.hand.position_m,
             command_m: match inputs.planned.0 {
-                // The plan is what the arm was commanded; the limits of the arm may keep it behind the hand's command.
+                // The plan is the command sent to the arm; the arm's limits may make it lag behind the hand's command.
                 Some(planned_m) => self.leader.command_m.map(|_| planned_m),
                 None => self.leader.command_behind_m(self.link.behind(silent_s), silent_s),
             },

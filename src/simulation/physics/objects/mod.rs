@@ -195,8 +195,8 @@ impl Objects {
         for substep in 1..=self.substeps {
             let fraction = f64::from(substep) / f64::from(self.substeps);
             self.tools.iter_mut().flatten().for_each(|tool| tool.place(fraction));
-            // The rings before the instruments: both use the poses of the same moment, and the reactions on an
-            // instrument must be complete before its fingers are driven.
+            // Both use the poses at the same moment, and the reactions on an instrument must be complete before its
+            // fingers are driven.
             self.touch_rings(step_s);
             self.touch_tools(step_s);
             self.tools.iter_mut().flatten().for_each(|tool| tool.drive(step_s));

@@ -70,7 +70,7 @@ fn modes_ui(ui: &mut Ui, live: &LiveState, outbox: &mut Outbox) {
     let room = ui.available_width() - 6.0 * (count - 1.0) - count * padding;
     let font = TextStyle::Button.resolve(ui.style());
     let widths = MODES.map(|mode| width_of(ui.painter(), mode_name(mode), font.clone()));
-    // A long name takes the room of the short ones before any of them gets smaller.
+    // A long name takes space from the short ones before any name gets smaller.
     let are_equal = widths.iter().all(|width| *width <= room / count);
     let needed: f32 = widths.iter().sum();
     let font = FontId { size: font.size * (0.98 * room / needed).min(1.0), ..font };

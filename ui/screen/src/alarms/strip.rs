@@ -152,7 +152,7 @@ fn words_ui(ui: &mut Ui, first: &AlarmEntry, others: usize, colour: Color32) -> 
         let alarm = &first.alarm;
         let cause =
             text::alarms::pinned(alarm.priority.word(), &alarm.cause, &first.began.time, &(seen.to_owned() + &more));
-        // The pointer on a text that is still too long shows all of it.
+        // Hovering over a text that is still too long shows all of it.
         let line = |ui: &mut Ui, words: &str, font: FontId, colour: Color32| {
             let font = fitting(ui.painter(), words, font, width);
             ui.add(Label::new(RichText::new(words).font(font).color(colour)).truncate());

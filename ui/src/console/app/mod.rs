@@ -296,7 +296,7 @@ impl eframe::App for ConsoleApp {
         if self.only_flashes(ctx) {
             return;
         }
-        // Also while the window is hidden, so that the queues stay empty and the history stays complete.
+        // Even while the window is hidden, so that the queues stay empty and the history stays complete.
         self.go_on_starting();
         self.take_in();
         self.ask();

@@ -63,7 +63,7 @@ impl FrameWizard {
         }
     }
 
-    /// Returns the instruction whose drawing is shown, also while the recording is paused or has not begun.
+    /// Returns the instruction whose drawing is shown, even while the recording is paused or has not begun.
     fn drawn(&self) -> Prompt {
         self.kind.prompt(self.other_way, self.taken(), || self.target())
     }
@@ -99,7 +99,7 @@ impl FrameWizard {
                 }
             });
             if complete {
-                // The room of the drawing stays, so that the buttons below do not move.
+                // Keep the space of the drawing, so that the buttons below do not move.
                 let height = if self.kind == FrameKind::Mount { POSE_HEIGHT } else { SIZE.y };
                 ui.add_space((height + top - ui.cursor().top()).max(0.0));
             }

@@ -5,7 +5,7 @@ use std::io;
 use super::Bus;
 use crate::emulators::{Emulator, EmulatorTurn, WireEnd, WirePeer, wires::terminal};
 
-/// Delay with which a waiting thread wakes up, s; answers are punctual nevertheless.
+/// Delay with which a waiting thread wakes up, s; answers are still punctual.
 const WAKE_S: f64 = 50e-6;
 
 impl Emulator for Bus {

@@ -2,9 +2,9 @@
 //! JPEG over HTTP and, in a program with the feature `h264`, as H.264 over RTSP at the same port; and into a named
 //! pipe.
 //!
-//! The scene comes from a [`EndoscopeBody`], a closure of the emulator's time; or the camera sees a calibration board in a
-//! person's [`BoardHands`]. A code in the upper left corner of the image contains the time of rendering. Images are rendered
-//! only while a client is connected. Faults of the content are its own (`freeze`, `black`, `torn`, `late`,
+//! The scene comes from an [`EndoscopeBody`], a closure of the emulator's time; or the camera sees a calibration board
+//! in a person's [`BoardHands`]. A code in the upper left corner of the image contains the time of rendering. Images
+//! are rendered only while a client is connected. Faults of the content are its own (`freeze`, `black`, `torn`, `late`,
 //! `wrong-size`, `other-format`); a client that does not read its images is disconnected.
 
 mod board;

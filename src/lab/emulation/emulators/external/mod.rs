@@ -44,7 +44,7 @@ impl EmulatedExternalArm {
     /// Makes the emulator with the arm that it moves.
     pub fn with(self, body: impl KinovaBody + 'static) -> Box<dyn Emulator> {
         Box::new(ExternalArmProgram {
-            // Another one after every start.
+            // Different after every start.
             session: fastrand::u32(1..),
             of: self,
             body: Box::new(body),

@@ -1,4 +1,4 @@
-//! Effect of **Apply** on a measured point, so that the loop does the work whose time was measured.
+//! Effect of **Apply** on a measured point: the loop then does the work whose time was measured.
 
 use nima_core::{impedance::Mode, limits::GAIN};
 use nima_machine::{
@@ -22,7 +22,7 @@ impl Apply {
         if needs_restart(&live.rig.identification, mode, choice) {
             return Self::Restart(Box::new(rig_with(live, mode, choice)));
         }
-        // The cost was measured for this mode alone.
+        // The cost was measured for this mode alone, so the comparison ends.
         Self::AtOnce([Command::Compare(false), Command::SetMode(mode), Command::SetDelay(choice.delay_ms * 1e-3)])
     }
 }

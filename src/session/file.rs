@@ -106,7 +106,8 @@ impl RecordedFile {
         Ok(SessionInfo { started, rig, scene, mode, seconds, stretch_from_s })
     }
 
-    /// Whether the recording was closed. If not, it is still running, the program was killed, or the file was cut.
+    /// Returns whether the recording was closed. If not, it is still running, the program was killed, or the file was
+    /// cut.
     ///
     /// # Errors
     /// [`ReadError`] if the end cannot be read.

@@ -103,7 +103,7 @@ impl JournalWriter {
         self.ticks
     }
 
-    /// Entries dropped so far.
+    /// Returns the number of entries dropped so far.
     pub const fn lost(&self) -> u64 {
         self.lost
     }

@@ -115,7 +115,7 @@ pub(crate) fn unless(
     if asked.load(Ordering::Relaxed) { Err(CutError::Asked) } else { Ok(message?) }
 }
 
-/// Whether an excerpt that begins here can keep the journal.
+/// Returns whether an excerpt that begins here can keep the journal.
 fn journal(reader: &SessionReader, start_ns: u64) -> Result<JournalOutcome, ReadError> {
     if reader.channels().iter().all(|channel| channel.topic != JOURNAL_TOPIC) {
         return Ok(JournalOutcome::None);

@@ -135,7 +135,7 @@ impl Hand {
         Self { search: Some(search), ..Self::with_task(scene, task) }
     }
 
-    /// Actions done so far, other than movements.
+    /// Returns the actions done so far, other than movements.
     pub(super) const fn acts(&self) -> Acts {
         self.acts
     }

@@ -242,7 +242,7 @@ fn part(from_m: Vector3<f64>, to_m: Vector3<f64>, seconds: f64, then: Option<Tas
     HandTaskPart { way: HandMove { from_m, to_m, seconds }, grip_rad: [0.0; 2], then }
 }
 
-/// Offsets of the cells around one.
+/// Returns the offsets of the cells around one cell.
 fn around() -> Vec<[isize; 2]> {
     let [min_m, max_m] = AROUND_M;
     let [lanes, cells] = [max_m / LANE_M, max_m / CELL_M].map(|max| max.ceil() as isize);

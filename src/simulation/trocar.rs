@@ -59,8 +59,8 @@ impl Trocar {
         self.force_n = wall_n - direction * self.along_n(depth_m - last_depth_m, wall_n.norm(), dt_s);
     }
 
-    /// Friction along the shaft (N, against inward motion): the `LuGre` model, integrated semi-implicitly so that it is
-    /// stable for any step.
+    /// Returns the friction along the shaft (N, against inward motion): the `LuGre` model, integrated semi-implicitly
+    /// so that it is stable for any step.
     fn along_n(&mut self, travel_m: f64, load_n: f64, dt_s: f64) -> f64 {
         let TrocarConfig { coulomb_n, static_n, stribeck_m_s, viscous_n_s_m, presliding_m, friction_per_load, .. } =
             self.config;

@@ -32,8 +32,8 @@ struct HiddenLayer {
 }
 
 impl Perceptron {
-    /// Uniform initial weights with a variance of one over the number of inputs. The last layer starts at zero, so that
-    /// the initial model is the linear path (`skip`: input by input).
+    /// Creates a network with uniform random weights, whose variance is one over the number of inputs. The last layer
+    /// starts at zero, so that the initial model is the linear path (`skip`: input by input).
     pub(super) fn new(
         (inputs, outputs): (usize, usize),
         hidden: &[usize],

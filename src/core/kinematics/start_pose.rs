@@ -194,8 +194,8 @@ fn wrapped(angle_rad: f64) -> f64 {
     angle_rad - TAU * (angle_rad / TAU).round()
 }
 
-/// Newton's method from a random start; returns joint angles within half a turn of the middles of their ranges, and the
-/// remaining error of tip and direction, m.
+/// Solves by Newton's method from a random start; returns joint angles within half a turn of the middles of their
+/// ranges, and the remaining error of tip and direction, m.
 fn converged(arm: &Arm, tip_m: &Vector3<f64>, shaft: &RcmShaft, start_rad: Joints) -> (Joints, f64) {
     let mut joint_rad = start_rad;
     let mut left_m = f64::INFINITY;

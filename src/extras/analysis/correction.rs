@@ -3,7 +3,7 @@
 use crate::check;
 use crate::error::{AnalysisError, Result};
 
-/// Holm's step-down p-values (A simple sequentially rejective multiple test procedure, Scandinavian Journal of
+/// Returns Holm's step-down p-values (A simple sequentially rejective multiple test procedure, Scandinavian Journal of
 /// Statistics 6, 1979), in the order of `p_values`; R's `p.adjust(p, "holm")`. Never less powerful than [`bonferroni`],
 /// and as general.
 ///

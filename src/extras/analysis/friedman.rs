@@ -84,7 +84,8 @@ pub fn test<Row: AsRef<[f64]>>(rows: &[Row]) -> Result<Friedman> {
     })
 }
 
-/// Probability that `n` participants give the same ranks by chance: each but the first hits one of the k! orders, fewer with ties.
+/// Returns the probability that `n` participants give the same ranks by chance: each but the first hits one of the k!
+/// orders, fewer with ties.
 fn by_chance(doubled: &[usize], n: f64) -> f64 {
     let mut sorted = doubled.to_vec();
     sorted.sort_unstable();

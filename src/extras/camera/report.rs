@@ -123,7 +123,7 @@ pub struct CalibratedLens {
 }
 
 impl LensReport {
-    /// Whether the lens may be used.
+    /// Returns the verdict on the lens.
     pub fn verdict(&self) -> Verdict {
         self.cause.as_ref().map_or(Verdict::Accepted, CameraCause::verdict)
     }

@@ -54,7 +54,7 @@ pub(crate) fn saddles(smooth: &Grey) -> Vec<Saddle> {
     looked_at.filter_map(|(_, at)| crosswise(smooth, &middle(at))).take(KEPT).collect()
 }
 
-/// Minus the determinant of the second derivatives: positive at a saddle.
+/// Returns minus the determinant of the second derivatives: positive at a saddle.
 fn strengths(smooth: &Grey) -> Vec<f32> {
     let [width, height] = smooth.size_px();
     let mut strength = vec![0.0; width * height];
@@ -84,7 +84,7 @@ fn is_peak(strength: &[f32], width: usize, [x, y]: [usize; 2]) -> bool {
     })
 }
 
-/// Whether light and dark alternate four times around a point, with opposite quarters alike.
+/// Checks whether light and dark alternate four times around a point, with opposite quarters alike.
 fn crosswise(smooth: &Grey, place_px: &Vector2<f64>) -> Option<Saddle> {
     let ring: [f64; RING] = std::array::from_fn(|k| {
         let (sin, cos) = (TAU * k as f64 / RING as f64).sin_cos();

@@ -83,7 +83,7 @@ impl CameraSession {
         self.size_px
     }
 
-    /// Views added so far.
+    /// Returns the views added so far.
     pub fn views(&self) -> &[BoardSight] {
         &self.views
     }

@@ -48,7 +48,7 @@ pub(crate) struct RigsArguments {
     pub(crate) json: bool,
 }
 
-/// Views of a view-only window.
+/// Parses the role of a view-only window.
 fn watching_role(word: &str) -> Result<Role, String> {
     match word {
         "surgeon" => Ok(Role::Surgeon),

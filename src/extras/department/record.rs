@@ -185,7 +185,7 @@ impl<'a> RigRecording<'a> {
         }
     }
 
-    /// Whether the rig no longer has this bundle.
+    /// Returns whether the rig no longer has this batch.
     fn has_lost(&self, number: u64, session: u64) -> Result<bool, DepartmentError> {
         let Some(head) = self.rig.ask(&keys::head(&self.rig.name))? else { return Ok(false) };
         let head = keys::unpack(&head.to_bytes()).map(|bytes| SessionHead::read(&bytes)).transpose()?;

@@ -60,7 +60,7 @@ pub trait Findings: Serialize {
         vec![(".md".to_owned(), self.text())]
     }
 
-    /// Whether the result meets its targets.
+    /// Checks whether the result meets its targets.
     ///
     /// # Errors
     /// A sentence for the user that says which target was missed.

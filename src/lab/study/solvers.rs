@@ -166,7 +166,7 @@ impl SolverFit {
         }
     }
 
-    /// Coefficients of `degree` in the solver's own columns; `None` if the solver found no solution.
+    /// Returns the coefficients of `degree` in the solver's own columns; `None` if the solver found no solution.
     pub fn coefficients(&self, degree: usize) -> Option<&[f64]> {
         self.coefficients.get(degree.wrapping_sub(1))?.as_deref()
     }
@@ -264,7 +264,8 @@ fn pseudo_inverse(x: DMatrix<f64>, f: &DVector<f64>) -> Option<Vec<f64>> {
     Some(svd.solve(f, cut_off).ok()?.as_slice().to_vec())
 }
 
-/// All degrees from one Householder factorisation; `None` with fewer rows than unknowns or a zero on the diagonal.
+/// Solves all degrees with one Householder factorisation; `None` with fewer rows than unknowns or a zero on the
+/// diagonal.
 fn fresh_qr(x: DMatrix<f64>, f: &DVector<f64>, max_degree: usize) -> [Option<Vec<f64>>; MAX_DEGREE] {
     let (rows, unknowns) = x.shape();
     let mut right = f.clone();

@@ -86,7 +86,7 @@ pub(super) const fn guard(_: &Path) -> Option<File> {
     None
 }
 
-/// Whether a process holds the lock of this file.
+/// Returns whether a process holds the lock of this file.
 #[cfg(unix)]
 pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
     match File::open(path)?.try_lock_shared() {
@@ -96,7 +96,7 @@ pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Whether a process holds the file's guard: then it cannot be opened for deletion.
+/// Returns whether a process holds the file's guard: then it cannot be opened for deletion.
 #[cfg(windows)]
 pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
     match OpenOptions::new().access_mode(DELETE).share_mode(SHARE_READ | SHARE_WRITE | SHARE_DELETE).open(path) {
@@ -111,7 +111,8 @@ pub(super) fn is_locked(_: &Path) -> io::Result<bool> {
     Ok(false)
 }
 
-/// Whether the file has been deleted while it is open: data written from now on are lost as soon as it is closed.
+/// Returns whether the file has been deleted while it is open: data written from now on are lost as soon as it is
+/// closed.
 #[cfg(unix)]
 pub(super) fn is_deleted(file: &File) -> io::Result<bool> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0)

@@ -149,7 +149,7 @@ fn between(places_m: &[Vector3<f64>; PLACES], squares: &[f64; PLACES], i: usize)
     places_m[i] + (places_m[towards] - places_m[i]) * fraction.abs()
 }
 
-/// Cosines and sines of the points on a circle.
+/// Returns the cosines and sines of the points on a circle.
 pub(crate) fn directions() -> [[f64; 2]; PLACES] {
     std::array::from_fn(|i| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * i as f64 / PLACES as f64);

@@ -102,7 +102,7 @@ impl WizardKind {
         Self::Camera,
     ];
 
-    /// Wizards of this build.
+    /// Returns the wizards of this build.
     pub fn built() -> impl Iterator<Item = Self> {
         let has_camera = HAS_CAMERA.load(Ordering::Relaxed);
         Self::ALL.into_iter().filter(move |which| has_camera || *which != Self::Camera)

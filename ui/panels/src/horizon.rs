@@ -83,7 +83,7 @@ fn mean_n(live: &LiveState, mode: Mode) -> Option<f64> {
     (count > 0.0).then(|| sum_n / count)
 }
 
-/// Errors of the active mode and of delayed DFR over the last minutes, one point per second.
+/// Draws the errors of the active mode and of delayed DFR over the last minutes, one point per second.
 fn trend_ui(ui: &mut Ui, live: &LiveState, plain: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TREND_HEIGHT), Sense::hover());
     let [ours, dfr] = [live.mode(), Mode::Dfr].map(|mode| newtons_in_three(mean_n(live, mode)));

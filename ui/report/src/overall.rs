@@ -42,7 +42,7 @@ const CALIBRATIONS: [(&str, &str); 7] = [
     ("network_doubt_share", "network: fraction of the check outside its training"),
 ];
 
-/// Properties of the session, and warnings.
+/// Returns the properties of the session, and warnings.
 pub(super) fn summary(session: &SessionFigures) -> Markup {
     let mut rows = vec![["file".to_owned(), name(session)], ["length".to_owned(), time(session.length_s)]];
     for (key, words) in ABOUT {

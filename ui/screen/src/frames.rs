@@ -31,7 +31,7 @@ pub struct FrameSpread {
 }
 
 impl FrameSpread {
-    /// Percentiles of these durations (ms); zeros if there are none.
+    /// Computes the percentiles of these durations (ms); zeros if there are none.
     pub fn of(durations_ms: &[f64]) -> Self {
         let mut sorted = durations_ms.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -180,8 +180,8 @@ impl FrameMeter {
 }
 
 impl Processor {
-    /// Fractions of one core, from two readings of the threads' times (s), `seconds` apart. A thread that started in between
-    /// counts from zero; one that has ended is not included.
+    /// Computes fractions of one core from two readings of the threads' times (s), `seconds` apart. A thread that
+    /// started in between counts from zero; one that has ended is not included.
     fn between(before: &BTreeMap<String, f64>, now: &BTreeMap<String, f64>, seconds: f64) -> Self {
         let fraction = |(name, time_s): (&String, &f64)| {
             let used_s = (time_s - before.get(name).copied().unwrap_or(0.0)).max(0.0);

@@ -123,7 +123,7 @@ impl ConsoleSessions {
         }
     }
 
-    /// Audiences that may see a trial of a blind study with this name.
+    /// Returns the audiences that may see a trial of a blind study with this name.
     pub(crate) fn blind_audiences(&self, plan: &SimulationPlan, trial: &str) -> Vec<Box<dyn Audience>> {
         self.servers.blind_audiences(plan, trial)
     }

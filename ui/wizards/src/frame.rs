@@ -83,7 +83,7 @@ pub trait Wizard: std::fmt::Debug {
     fn tick(&mut self, tick: &Tick, rate_hz: f64);
     /// Returns the current instruction to the person at the arm.
     fn prompt(&self) -> Prompt;
-    /// Whether the next step may start; otherwise the reason.
+    /// Checks whether the next step may start; the error is the reason.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
     /// Draws a step before the last.
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest>;
@@ -178,7 +178,7 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
 
 /// State of the button for the next step.
 struct GoingOn {
-    /// Whether the next step may start; otherwise the reason.
+    /// Checks whether the next step may start; the error is the reason.
     may: Result<(), &'static str>,
     /// The current step is complete.
     is_done: bool,

@@ -10,7 +10,8 @@ pub struct AgeGate {
 }
 
 impl AgeGate {
-    /// Full force until `fade_after_s`, none from `zero_after_s` on (s, the second above the first).
+    /// Creates a gate that passes the full force until `fade_after_s` and none from `zero_after_s` on (s, the second
+    /// above the first).
     pub const fn new(fade_after_s: f64, zero_after_s: f64) -> Self {
         Self { fade_after_s, zero_after_s }
     }

@@ -190,7 +190,7 @@ fn moves_along<const D: usize>(now: &Parabola<D>) -> bool {
     size_n >= WEAK_N && now.velocity_m_s.dot(&now.applied_n) >= OUT_M_S * size_n
 }
 
-/// Whether the hand's force has vanished in a step.
+/// Returns whether the hand's force has vanished in a step.
 fn steps<const D: usize>(past: &ObserverHistory<D>) -> EvidenceAnswer {
     let mut alone = EvidenceAnswer::No;
     for [before_s, after_s] in STEPS_S {

@@ -5,12 +5,13 @@ use super::design::MixedDesign;
 use super::likelihood::{LikelihoodPoint, LikelihoodProfile};
 use crate::error::{AnalysisError, Result};
 
-/// Correlations within a participant for the first scan of the likelihood: evenly spaced, then ever closer to 1.
+/// Returns the correlations within a participant for the first scan of the likelihood: evenly spaced, then ever closer
+/// to 1.
 fn correlations() -> impl Iterator<Item = f64> {
     (0..50).map(|step| f64::from(step) / 50.0).chain((2..=9).map(|digits| 1.0 - 0.1_f64.powi(digits)))
 }
 
-/// Found as the zero of the slope, which is sharper than the flat top of the likelihood.
+/// Finds the zero of the slope, which is sharper than the flat top of the likelihood.
 pub(super) fn ratio(design: &MixedDesign, criterion: MixedCriterion) -> Result<f64> {
     let profile = LikelihoodProfile::of(design, criterion);
     let points: Vec<LikelihoodPoint> =
@@ -32,7 +33,7 @@ pub(super) fn ratio(design: &MixedDesign, criterion: MixedCriterion) -> Result<f
 
 const FLAT: AnalysisError = AnalysisError::NotEstimable { why: "no maximum of the likelihood was found" };
 
-/// By halving; the slope is negative below the ratio and positive above.
+/// Finds the zero by halving; the slope is negative below the ratio and positive above.
 fn zero(mut low: f64, mut high: f64, slope: impl Fn(f64) -> Option<f64>) -> Result<f64> {
     if slope(low).ok_or(FLAT)? > 0.0 || slope(high).ok_or(FLAT)? < 0.0 {
         return Err(FLAT);

@@ -41,7 +41,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// Whether `n` values are to be computed exactly.
+    /// Returns whether `n` values are to be computed exactly.
     pub(crate) fn is_exact(self, what: &'static str, n: usize) -> Result<bool> {
         match self {
             Self::Automatic => Ok(n <= MAX_EXACT),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Complex;
 
-/// Magnitudes of the first `bins` frequencies of a signal padded with zeros to `length`, a power of two.
+/// Returns the magnitudes of the first `bins` frequencies of a signal padded with zeros to `length`, a power of two.
 pub(crate) fn magnitude_spectrum(signal: &[f64], length: usize, bins: usize) -> Vec<f64> {
     let length = length.max(signal.len()).next_power_of_two();
     let mut values = vec![Complex::new(0.0, 0.0); length];

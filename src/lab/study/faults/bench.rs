@@ -207,8 +207,8 @@ impl FaultBench {
         })
     }
 
-    /// Whether the fault is outside the rig and has taken effect: packets that a link loses or corrupts are missed only
-    /// when they are due.
+    /// Returns whether the fault is outside the rig and has taken effect: packets that a link loses or corrupts are
+    /// missed only when they are due.
     fn is_elsewhere(&self) -> bool {
         let Some((fault, since)) = self.fault else { return false };
         match fault.part() {

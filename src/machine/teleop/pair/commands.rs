@@ -181,7 +181,7 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Actions on entering a state: every state starts from zero force and a follower at rest.
+    /// Enters a state: every state starts from zero force and a follower at rest.
     pub(super) fn enter(&mut self, change: StateChange<Fault>, t_s: f64) {
         let StateChange { from, to, why } = change;
         self.note(Event::StateChanged { t_s, side: self.side, from, to, why });

@@ -216,7 +216,7 @@ fn tool_on_ring(
     touched.then_some(pressed_n)
 }
 
-/// Contacts of a ring with the tube of another; returns whether there are any.
+/// Applies the contacts of a ring with the tube of another; returns whether there are any.
 fn places_on_ring(a: &mut Ring, b: &mut Ring, pair: &mut RingPair, law: &Law, step_s: f64) -> bool {
     let reach_m = a.tube_radius_m + b.tube_radius_m;
     let mut touching = false;

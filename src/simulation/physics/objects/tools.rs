@@ -79,7 +79,7 @@ fn between(
     (depth_m > 0.0).then_some((position_m, touch))
 }
 
-/// Contact of the ends of the fingers and of the shaft with the board.
+/// Applies the contact of the finger ends and of the shaft with the board.
 fn board_under_tool(
     tool: &mut PhysicsTool,
     z_m: f64,

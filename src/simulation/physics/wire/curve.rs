@@ -238,7 +238,7 @@ fn crosses(from_m: f64, to_m: f64) -> bool {
     (from_m < 0.0) != (to_m < 0.0)
 }
 
-/// Slopes per length at each point: of the parabola through it and its neighbours, and straight at the ends.
+/// Returns the slope per length at each point: of the parabola through it and its neighbours, and straight at the ends.
 fn slopes(points_m: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let secant = |i: usize| {
         let travel_m = points_m[i + 1] - points_m[i];

@@ -197,7 +197,7 @@ impl Wire {
         (held.off_axis_m(&self.curve.at(along_m)) < radius_m + TORN_OFF_M).then_some(along_m)
     }
 
-    /// Contact of the loop's lowest point with the board.
+    /// Applies the contact of the loop's lowest point with the board.
     fn on_board(&self, held: &mut TipLoop, loads: &mut InstrumentLoads) {
         let Circle { centre_m, axis, radius_m, .. } = held.circle;
         let board = &self.setting.board;

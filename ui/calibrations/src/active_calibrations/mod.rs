@@ -174,7 +174,7 @@ impl ActiveCalibrations {
         rig
     }
 
-    /// Calibrations for a loop of this rig that is about to start.
+    /// Returns the calibrations for a loop of this rig that is about to start.
     pub fn calibrations(&mut self, rig: &RigConfig) -> [Calibrations; SIDES] {
         self.sides.each_mut().map(|of_side| of_side.calibrations(rig.tip_force.fallback))
     }

@@ -175,7 +175,7 @@ impl SideCalibrations {
         self.without_gravity().filter(|_| self.others.contains(other))
     }
 
-    /// Problems and remedies; `across` is the wrist sensor of the other arm.
+    /// Returns problems and remedies; `across` is the wrist sensor of the other arm.
     pub(super) fn report(&self, across: Option<&WristId>) -> Option<String> {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
         let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();

@@ -85,7 +85,7 @@ impl FrameKind {
         Texts { before, task, units, other_way: other }
     }
 
-    /// Whether the alternative method is available on this rig; otherwise the reason.
+    /// Checks whether the alternative method is available on this rig; the error is the reason.
     pub fn other_way_needs(self, subject: &FrameSubject) -> Result<(), &'static str> {
         match self {
             Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE.get()),

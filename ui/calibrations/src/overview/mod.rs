@@ -126,7 +126,7 @@ impl From<StoredFrame> for CalibrationEntry {
     }
 }
 
-/// Whether the rig file still has the values that the calibration wrote.
+/// States whether the rig file still has the values that the calibration wrote.
 fn in_file(kept: &StoredFrame, file: Option<&RigFile>) -> String {
     let Some(file) = file.filter(|_| !kept.rig.is_empty()) else { return text::overview::NOT_WATCHED.get().to_owned() };
     let same = kept.rig.iter().all(|change| file.value(&change.key) == change.after);

@@ -204,7 +204,7 @@ impl OverlayImage<'_> {
         self.label(place, align, &text::endoscope_view::force(size_n), 17.0, colour);
     }
 
-    /// Contact at the tip: four corners around it, which leave it free.
+    /// Draws contact at the tip: four corners around it, which leave it free.
     fn contact(&self, tip: Pos2) {
         for (stroke, more) in [(SHADE, 2.0), (theme::DARK.text, 0.0)] {
             for (x, y) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
@@ -215,7 +215,7 @@ impl OverlayImage<'_> {
         }
     }
 
-    /// Text with a dark outline on all sides.
+    /// Draws text with a dark outline on all sides.
     fn label(&self, place: Pos2, align: Align2, words: &str, size: f32, colour: Color32) {
         for shift in [vec2(1.5, 0.0), vec2(-1.5, 0.0), vec2(0.0, 1.5), vec2(0.0, -1.5)] {
             self.painter.text(place + shift, align, words, theme::strong(size), SHADE);

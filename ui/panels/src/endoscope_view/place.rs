@@ -57,7 +57,7 @@ impl ImagePlacement {
         self.turned(pos2((place_px.x / width) as f32, (place_px.y / height) as f32))
     }
 
-    /// Corners of the uncropped area, as fractions of the whole image's sides, and their positions.
+    /// Returns the corners of the uncropped area, as fractions of the whole image's sides, and their positions.
     pub(super) fn corners(&self) -> [(Pos2, Pos2); 4] {
         let [from, to] = self.fraction;
         let Rect { min, max } = self.part;

@@ -102,7 +102,7 @@ fn report(live: &LiveState) -> String {
     }
 }
 
-/// Explanation of the colours, instead of a second hand.
+/// Explains the colours where a second hand would be shown.
 fn reported_ui(ui: &Ui, live: &LiveState, place: Rect) {
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);

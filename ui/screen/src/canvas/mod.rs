@@ -174,8 +174,8 @@ fn differences(before: (&[ClippedShape], &[u64]), now: (&[ClippedShape], &[u64])
     Some(rects)
 }
 
-/// Rectangles that do not overlap and cover all of these. A shape drawn by a callback is drawn completely or not at
-/// all.
+/// Returns rectangles that do not overlap and cover all of these. A shape drawn by a callback is drawn completely or
+/// not at all.
 fn apart(mut rects: Vec<Rect>, shapes: &[ClippedShape]) -> Vec<Rect> {
     let callbacks: Vec<Rect> =
         shapes.iter().filter(|shape| matches!(shape.shape, Shape::Callback(_))).map(bounds).collect();

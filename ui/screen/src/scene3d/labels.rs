@@ -215,7 +215,7 @@ pub(super) fn release(painter: &Painter, rect: Rect, camera: &SceneCamera, trail
     label(painter, to + vec2(12.0, 0.0), Align2::LEFT_CENTER, &words, theme::strong(20.0), theme::DARK.watching);
 }
 
-/// Directions of the traces' x, y and z, in the lower right corner.
+/// Draws the directions of the traces' x, y and z, in the lower right corner.
 pub(super) fn axes(painter: &Painter, rect: Rect, camera: &SceneCamera) {
     const LENGTH: f32 = 26.0;
     let origin = rect.right_bottom() - vec2(54.0, 40.0);

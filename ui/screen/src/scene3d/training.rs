@@ -84,7 +84,7 @@ pub(super) fn hoop(
     Some(tip_m + up * major_m)
 }
 
-/// Pins at the operator's marks; after the trial also the lumps, and false marks look different.
+/// Draws pins at the operator's marks; after the trial also the lumps, and false marks look different.
 pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &DisplayedObjects, lift_m: impl Fn(f32, f32) -> f32) {
     for (position_m, is_true) in &shown.marks {
         let foot_m = position_m + Vector3::z() * lift_m(position_m.x, position_m.y);

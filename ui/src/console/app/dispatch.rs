@@ -90,7 +90,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Commands that only change the screen.
+    /// Executes a command that only changes the screen.
     fn act_on_screen(&mut self, action: Action) {
         let settings = &mut self.settings.now;
         match action {
@@ -127,7 +127,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Commands that change the views.
+    /// Executes a command that changes the views.
     fn act_on_view(&mut self, action: Action) {
         let (live, panels) = match self.shown.past_mut() {
             Some(past) => (past.live.as_deref(), &mut past.panels),

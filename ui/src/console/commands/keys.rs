@@ -28,7 +28,7 @@ impl KeyModifiers {
         }
     }
 
-    /// Modifiers to hold down.
+    /// Returns the modifiers to hold down.
     pub fn modifiers(self) -> Modifiers {
         match self {
             Self::Nothing => Modifiers::NONE,

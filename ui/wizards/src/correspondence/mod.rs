@@ -106,7 +106,7 @@ impl CorrespondenceWizard {
         self.good_report().and_then(|report| report.solution.as_ref())
     }
 
-    /// Whether all sources deliver and both sensors have been at rest.
+    /// Checks whether all sources deliver and both sensors have been at rest.
     fn may_push(&self) -> Result<(), &'static str> {
         let Some(sources) = self.sources else { return Err(text::correspondence::NEEDS_WRIST_SENSOR.get()) };
         match self.session.phase() {

@@ -25,7 +25,7 @@ const SOURCES: [(Text, Text); 5] = [
     (text::tip_force::SOURCE_DEPTH, text::tip_force::SOURCE_NO_DEPTH),
 ];
 
-/// Sources that delivered in this tick.
+/// Returns the sources that delivered in this tick.
 pub(super) fn sources(tick: &Tick) -> ReadySources {
     tick.calibration.wrist.as_ref().map_or_else(ReadySources::default, |sample| {
         let gravity = tick.force.gravity_free.is_some();
@@ -39,7 +39,7 @@ impl TipForceWizard {
         self.sources[0] && !binding.sensor.is_empty()
     }
 
-    /// Whether a recording can start; the first reason if not.
+    /// Checks whether a recording can start; the error is the first reason.
     pub(super) fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
         if !self.has_sensor(binding) {
             return Err(text::correspondence::NEEDS_WRIST_SENSOR.get());

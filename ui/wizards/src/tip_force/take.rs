@@ -18,7 +18,7 @@ pub(super) struct RecordingClock {
 }
 
 impl RecordingClock {
-    /// Continuous time, s; and whether ticks were missing before this one.
+    /// Returns the continuous time, s, and whether ticks were missing before this one.
     pub(super) fn at(&mut self, t_s: f64) -> (f64, bool) {
         let now_s = self.begin_s + t_s;
         let Some(last_s) = self.last_s.replace(now_s) else { return (now_s, false) };

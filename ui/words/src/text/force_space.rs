@@ -51,7 +51,7 @@ pub fn too_short(seconds: f64) -> String {
     )
 }
 
-/// Two lines, separated by a semicolon. Mean and half axes in N, `percent` of samples inside.
+/// Returns two lines, separated by a semicolon. Mean and half axes in N, `percent` of samples inside.
 pub fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
     text_format!(
         "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \

@@ -235,7 +235,7 @@ pub fn known_signals(force: &str, position: &str) -> String {
     )
 }
 
-/// Forces and positions at a moment, with their units.
+/// Returns forces and positions at a moment, with their units.
 pub fn values_now(force: &str, position: &str) -> String {
     text_format!("Force  {force}     Position  {position}", "Kraft  {force}     Position  {position}")
 }
@@ -293,7 +293,8 @@ pub fn device(name: DeviceName, standing: ConnectionState) -> String {
     format!("{name}: {how}")
 }
 
-/// Calibrations of a side, from the metadata of the session; used since this time, s, or since the beginning.
+/// Returns the calibrations of a side, from the metadata of the session; used since this time, s, or since the
+/// beginning.
 pub fn calibrations(side: &str, table: &BTreeMap<String, String>, since_s: Option<f64>) -> String {
     let report = |key: &str| table.get(key).filter(|value| !value.is_empty());
     // Verdict and error on held-out data.

@@ -142,7 +142,7 @@ pub const TWIST_HOVER: Text = Text::of(
      Ring. Es wird nicht in der Hand dargestellt.",
 );
 
-/// Torques about the shaft in mNm, of the object in the jaws and at the wrist sensor; `None` if unknown.
+/// Returns the torques about the shaft in mNm, of the object in the jaws and at the wrist sensor; `None` if unknown.
 pub fn twist([jaws_mnm, wrist_mnm]: [Option<f64>; 2]) -> String {
     // Avoids `-0.0`.
     let report = |mnm: f64, whose: &str| {

@@ -115,7 +115,7 @@ pub fn swaying(supply_v: f64) -> DynamixelBody {
 }
 
 impl Bus {
-    /// New from the factory, except for ids and baud rate. Without a body the shafts sway slowly.
+    /// Creates servos as new from the factory, except for ids and baud rate. Without a body the shafts sway slowly.
     ///
     /// # Errors
     /// If the model or the baud rate does not exist.

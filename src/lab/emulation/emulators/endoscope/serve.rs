@@ -93,7 +93,7 @@ impl EndoscopeServer {
         self.workshop.as_ref().is_some_and(|workshop| workshop.is_busy)
     }
 
-    /// Orders the image of this time.
+    /// Requests the image of this time.
     fn order(&mut self, now_s: f64, fault: EmulatedFault) {
         // Read the time before the view, so that a reader of this time can rely on nothing in the image being older.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();

@@ -193,13 +193,13 @@ impl Robot {
         self.rest(MANUAL_STOP);
     }
 
-    /// Emergency stop until faults are cleared.
+    /// Stops the arm until faults are cleared.
     pub(super) fn emergency_stop(&mut self) {
         self.base_fault |= EMERGENCY_STOP;
         self.rest(sub::EMERGENCY_STOP);
     }
 
-    /// Whether the base may begin a motion.
+    /// Checks whether the base may begin a motion.
     fn ready(&self) -> ObeyResult {
         match &self.motion {
             _ if self.mode == ServoingMode::Low => Err(sub::WRONG_SERVOING_MODE),

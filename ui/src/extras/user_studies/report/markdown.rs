@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use nima_report::html::table;
 
-/// Blocks between empty lines: a table, or sentences.
+/// Renders the blocks between empty lines: a table, or sentences.
 pub(super) fn markup(text: &str) -> Markup {
     html! {
         @for block in text.split("\n\n").map(str::trim).filter(|block| !block.is_empty()) {

@@ -125,7 +125,7 @@ fn page(
     html::page(&plan.name, &body)
 }
 
-/// Blindness of the study, and its conditions.
+/// Describes the blinding of the study, and its conditions.
 fn conditions(study: &UserStudy) -> Markup {
     let plan = study.plan();
     let row = |(label, name): (Label, &str)| {

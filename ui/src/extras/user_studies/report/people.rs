@@ -33,7 +33,7 @@ pub(super) fn participants(study: &UserStudy) -> Markup {
     section("Participants", &table(&heads, &rows))
 }
 
-/// Exclusions from the analysis, with reasons.
+/// Lists the exclusions from the analysis, with reasons.
 pub(super) fn left_out(trials: &StudyTable) -> Markup {
     let excluded = trials.excluded.iter().map(|Exclusion { participant, trial, why }| {
         let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));

@@ -90,7 +90,7 @@ pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
 /// Width within which the secondary measures wrap, points: a third of the smallest window.
 const SECONDARY_WIDTH: f32 = 300.0;
 
-/// Rules that exclude trials and participants.
+/// Shows the rules that exclude trials and participants.
 pub(super) fn exclusion_ui(ui: &mut Ui, draft: &mut Draft) {
     let mut gone = None;
     card(ui, text::study_form::EXCLUSION, text::study_form::EXCLUSION_HOVER, |ui| {

@@ -35,7 +35,7 @@ pub(super) enum QuestionChoice {
     Submit(QuestionnaireAnswers),
 }
 
-/// All values; `None` if one is missing.
+/// Returns all values; `None` if one is missing.
 fn all<T: Copy + Default, const N: usize>(given: &[Option<T>; N]) -> Option<[T; N]> {
     given.iter().all(Option::is_some).then(|| given.map(Option::unwrap_or_default))
 }

@@ -17,7 +17,7 @@ pub enum EndoscopeError {
     #[error("{place} sends {found}, not {wanted}")]
     OtherFormat { place: String, found: String, wanted: &'static str },
     /// The response is not HTTP or exceeds a limit.
-    #[error("{place} sends an unreadable response: {reason}")]
+    #[error("{place} sent an unreadable response: {reason}")]
     Unreadable { place: String, reason: String },
     #[error("{place} is open but sends nothing")]
     Silent { place: String },

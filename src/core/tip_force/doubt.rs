@@ -75,7 +75,7 @@ impl Doubt {
             distances.push(quantile(fold_distances));
             reaches.push(quantile(fold_reaches));
         }
-        // The limits divide, so they may not be zero.
+        // The limits are divisors, so they must not be zero.
         doubt.distance_limit = room * median(distances).max(1e-3);
         doubt.range_limit = room * median(reaches).max(1.0);
         doubt.spread_limit = room * quantile(spreads).max(1e-6);

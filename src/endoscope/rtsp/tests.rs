@@ -151,7 +151,7 @@ fn each_cause_is_told_with_its_cure() {
 #[test]
 fn a_client_that_panics_ends_what_was_asked_for_and_not_the_thread() {
     let report = guarded::<()>("cam:554", || panic!("as the client does")).unwrap_err();
-    assert_eq!(report.to_string(), "cam:554 sends an unreadable response: a response that cannot be parsed");
+    assert_eq!(report.to_string(), "cam:554 sent an unreadable response: a response that cannot be parsed");
 }
 
 #[test]

@@ -48,7 +48,7 @@ pub enum PlaceError {
     NotSeen,
 }
 
-/// Why a pose may not be used.
+/// Why a pose is rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlaceLack {
     /// The touched points do not fit a flat board with these squares: a corner was missed, or the board moved.
@@ -78,7 +78,7 @@ pub struct CameraPlacement {
     pub held_out_px: f64,
     /// Maximum of these distances, px.
     pub held_out_max_px: f64,
-    /// The reason why the pose may not be used; `None` if it may.
+    /// The reason why the pose is rejected; `None` if it is accepted.
     pub lack: Option<PlaceLack>,
 }
 

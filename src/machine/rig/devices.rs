@@ -23,8 +23,8 @@ use super::{
     arm_pair::SharedReadings, device_identity::DeviceIdentities, doubles::ReportedSerials, makes::Opener,
 };
 
-/// A reading older than this counts as missing, s.
-/// The same age as `SILENT_AFTER_S` of the loop: a force may not be older for either reason.
+/// A reading older than this counts as missing, s. The same age as `SILENT_AFTER_S` of the loop: a force must not be
+/// older for either reason.
 pub(super) const OLDEST_S: f64 = 0.020;
 
 /// All devices of a rig. Owned by the real-time thread.

@@ -3,7 +3,7 @@
 use crate::rig::Inputs;
 
 /// If the rig delivers no sample for longer than this, s, that is a fault. As long as the supervisor waits for the loop
-/// itself (`STALL_MAX_S`): a force may not be older for either reason.
+/// itself (`STALL_MAX_S`): a force must not be older for either reason.
 pub(super) const SILENT_AFTER_S: f64 = 0.020;
 /// Number of missing samples that counts as a fault; each arriving sample compensates for [`FORGIVEN`] missing ones.
 const TOO_MANY: f64 = 8.0;

@@ -49,7 +49,7 @@ pub enum BagError {
     #[error("recording {path}: topic {topic} has a message that cannot be read; record it again", path = .path.display())]
     Message { path: PathBuf, topic: String },
     #[error(
-        "recording {path}: the time of topic {topic} steps back by {back_s:.3} s, {after_s:.3} s after its first message, as when the clock of the computer is set; split the recording there and use the parts separately",
+        "recording {path}: the time of topic {topic} steps back by {back_s:.3} s, {after_s:.3} s after its first message, as happens when the computer's clock is set; split the recording there and use the parts separately",
         path = .path.display()
     )]
     ClockSet { path: PathBuf, topic: String, after_s: f64, back_s: f64 },

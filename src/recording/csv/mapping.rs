@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ColumnMappingError {
-    #[error("--map {text}: not of the form NAME=COLUMN or NAME=COLUMN*SCALE; write for example x=px_mm*0.001")]
+    #[error("--map {text}: this is not NAME=COLUMN or NAME=COLUMN*SCALE; write, for example, x=px_mm*0.001")]
     Form { text: String },
     #[error("--map {text}: there is no quantity \"{name}\"; use one of {known}")]
     Name { text: String, name: String, known: String },
-    #[error("--map {text}: \"{name}\" takes {wanted} columns, not {found}; write for example {name}=A,B,C*0.001")]
+    #[error("--map {text}: \"{name}\" takes {wanted} columns, not {found}; write, for example, {name}=A,B,C*0.001")]
     Several { text: String, name: String, wanted: usize, found: usize },
-    #[error("--map {text}: the scale \"{scale}\" is not a number other than zero; write for example 0.001")]
+    #[error("--map {text}: the scale \"{scale}\" must be a number other than zero, such as 0.001")]
     Scale { text: String, scale: String },
     #[error("--map {text}: \"{name}\" is mapped twice; map each quantity once")]
     Twice { text: String, name: String },

@@ -69,7 +69,7 @@ pub enum RecordingError {
         field: String,
     },
     #[error(
-        "recording {path}, line {line}, column \"{column}\": \"{field}\" has a decimal comma, but the rows before have decimal points or whole numbers; write all numbers in one way"
+        "recording {path}, line {line}, column \"{column}\": \"{field}\" has a decimal comma, but the rows before have decimal points or whole numbers; use the same decimal separator in all rows"
     )]
     DecimalComma {
         path: PathBuf,
@@ -89,7 +89,7 @@ pub enum RecordingError {
         field: String,
     },
     #[error(
-        "recording {path}, line {line}: the time steps back by {back_s} s (from {before_s} s to {now_s} s), as when the clock of the computer is set; split the file before this line and use the parts separately"
+        "recording {path}, line {line}: the time steps back by {back_s} s (from {before_s} s to {now_s} s), as happens when the computer's clock is set; split the file before this line and use the parts separately"
     )]
     ClockSet {
         path: PathBuf,

@@ -45,7 +45,7 @@ pub enum TipForceError {
     Model { path: PathBuf, reason: String },
     #[error(transparent)]
     NotLive(#[from] nima_core::tip_force::NotLive),
-    #[error("the tip-force model may not be used: {reason}; check it on a new recording")]
+    #[error("the tip-force model must not be used: {reason}; check it on a new recording")]
     NotProven { reason: String },
     #[error(transparent)]
     Store(#[from] StoreError),

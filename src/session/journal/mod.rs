@@ -48,7 +48,7 @@ const HEAD: usize = 10;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JournalError {
-    #[error("it is not a journal of a session of this program")]
+    #[error("it was not written by this program")]
     Foreign,
     #[error(
         "its journal has version {found}, but this program reads versions {OLDEST} and {VERSION}; replay it with the program that recorded it"

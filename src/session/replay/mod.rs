@@ -33,7 +33,7 @@ pub enum ReplayError {
     #[error("it has no journal; only sessions recorded with `nima run --record` can be replayed")]
     NoJournal,
     #[error(
-        "calibrations number {number} become active at tick {tick}, but the file does not contain them: it was cut or damaged"
+        "calibration set {number} becomes active at tick {tick}, but the file does not contain it: the file was cut or damaged"
     )]
     NoCalibrations { number: u64, tick: u64 },
     /// The settings of the rig, as recorded or as changed, are not usable.

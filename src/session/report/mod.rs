@@ -48,7 +48,7 @@ pub enum ReportError {
     #[error(transparent)]
     File(#[from] ReadError),
     #[error(
-        "{path} has neither the journal nor the plots of a session of this program; choose a file written by `nima run --record` or the console"
+        "{path} contains neither a journal nor plots written by this program; choose a file written by `nima run --record` or the console"
     )]
     Foreign { path: String },
 }

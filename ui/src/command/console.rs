@@ -146,7 +146,7 @@ fn open(arguments: &ConsoleArguments, signals: Option<Arc<Signals>>) -> anyhow::
     let servers = arguments.watching.start()?;
     anyhow::ensure!(
         servers.is_empty() || folder.is_some(),
-        "viewers see recorded data, but no folder for sessions was found: set NIMA_DATA_DIR"
+        "viewers need a recorded session, but no folder for sessions was found: set NIMA_DATA_DIR"
     );
     let mut sessions = ConsoleSessions::of_user(folder, servers);
     let network = arguments.network.clone();

@@ -64,11 +64,11 @@ pub(super) fn run(arguments: &ExportArguments) -> anyhow::Result<()> {
         bail!("a layout applies to the whole session: omit --arm, --anonymous, --from and --to");
     }
     if is("mcap") && arm.is_some() {
-        bail!("--arm applies only to tables: omit it, an exported session keeps both arms");
+        bail!("--arm applies only to tables: omit it; an exported session keeps both arms");
     }
     if is("csv") && *anonymous {
         bail!(
-            "--anonymous applies only to sessions (.mcap): omit it, a table of an anonymous session is anonymous too"
+            "--anonymous applies only to sessions (.mcap): omit it; a table of an anonymous session is anonymous too"
         );
     }
     if out.symlink_metadata().is_ok() {
@@ -99,7 +99,7 @@ fn laid_out(reader: &SessionReader, session: &Path, name: &str, out: &Path) -> a
     let attachment = reader.attachments().iter().find(|attachment| attachment.name == name);
     let attachment = attachment.with_context(|| {
         format!(
-            "session {} has no {name}: an older program recorded it; use the layout of a newer session",
+            "session {} has no {name}, because an older program recorded it; export the layout of a newer session",
             session.display()
         )
     })?;

@@ -99,7 +99,7 @@ fn what_cannot_be_mapped_or_written_is_one_line() {
         (with(&[name, name], &["--out", out.to_str().unwrap()]), "--out writes the samples of a single recording"),
         (
             vec!["identify", name, "--map", "xyz=px,py"],
-            "\"xyz\" takes 3 columns, not 2; write for example xyz=A,B,C*0.001",
+            "\"xyz\" takes 3 columns, not 2; write, for example, xyz=A,B,C*0.001",
         ),
         (vec!["identify", name, "--map", "uvw=a,b,c"], "there is no quantity \"uvw\""),
         (with(&[name], &["--map", "lx=hx"]), "no column \"ly_m\" for leader's motion"),

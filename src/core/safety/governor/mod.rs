@@ -352,7 +352,7 @@ impl<const D: usize> Governor<D> {
                 }
                 // A decrease of the request uses up part of the slew limit; the brake gets the rest.
                 let max_n = asked_n.norm();
-                // If the request shrinks, the brake may not exceed it: it is never stronger than the force the
+                // If the request shrinks, the brake must not exceed it: it is never stronger than the force the
                 // operator expects.
                 let kept_n = within(self.applied_n, max_n);
                 let room_n = (step_n - (kept_n - self.applied_n).norm()).max(0.0);

@@ -86,7 +86,7 @@ impl FallState {
         let size_n = now_n.norm();
         let falls_n = self.size_n - size_n;
         let is_gone = size_n <= GONE_N;
-        // The force may not turn sideways or reverse by more than the force that counts as zero.
+        // The force must not turn sideways or reverse by more than the force that counts as zero.
         let along_n = if from_n > 0.0 { now_n.dot(&self.from_n) / from_n } else { 0.0 };
         let aside_n = (now_n.norm_squared() - along_n * along_n).max(0.0).sqrt();
         // Every sample has to continue the fall; one that rises ends it for good.

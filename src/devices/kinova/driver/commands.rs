@@ -26,7 +26,7 @@ pub enum KinovaRefusal {
     Moving,
     #[error("the command contains a non-finite number: send finite numbers")]
     NotFinite,
-    #[error("joint {joint} was commanded {beyond}: the arm brakes and leaves low-level servoing")]
+    #[error("the command for joint {joint} is {beyond}: the arm brakes and leaves low-level servoing")]
     Beyond {
         /// The joint, counted from 1.
         joint: usize,

@@ -47,11 +47,11 @@ pub enum PairingError {
     Nobody,
     /// The entered code is wrong.
     #[error(
-        "pairing: this is not the code of the other machine, and nothing was saved. If it was not mistyped, a third party is between the two machines: check the network, then pair again"
+        "pairing: wrong code; nothing was saved. If you entered it correctly, a third party may be intercepting the connection: check the network, then pair again"
     )]
     WrongCode,
     /// The entered text is not a code.
-    #[error("pairing: a code has {DIGITS} digits; enter the one that the other screen shows")]
+    #[error("pairing: a code has {DIGITS} digits; enter the code on the other screen")]
     NoCode,
     /// Too many wrong codes.
     #[error("pairing: too many wrong codes; wait {wait_s:.0} s, then try again")]

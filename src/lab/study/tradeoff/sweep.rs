@@ -23,7 +23,7 @@ const LONGEST_FRACTION: f64 = 0.25;
 pub enum SweepError {
     #[error("cancelled; nothing was saved")]
     Cancelled,
-    #[error("{name}: no point of the plan can be measured on it: {reason}; record longer, or at a higher rate")]
+    #[error("{name}: no point of the plan can be measured: {reason}; record longer or at a higher rate")]
     Nothing {
         name: String,
         /// Reason why its first point was left out.

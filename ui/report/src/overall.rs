@@ -39,7 +39,7 @@ const CALIBRATIONS: [(&str, &str); 7] = [
     ("gravity_poses", "gravity: still poses"),
     ("network_error_n", "network: mean error on data recorded after its training (N)"),
     ("network_rows", "network: rows of the check"),
-    ("network_doubt_share", "network: fraction of the check outside its training"),
+    ("network_doubt_share", "network: fraction of the check outside its training data"),
 ];
 
 /// Returns the properties of the session, and warnings.

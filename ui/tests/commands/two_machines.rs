@@ -70,7 +70,7 @@ fn a_machine_that_is_not_paired_or_paired_with_a_wrong_code_is_refused() {
     let wrong = if code.starts_with('1') { "2" } else { "1" }.to_owned() + &code[1..];
     for attempt in 0..3 {
         let here = entered(console.path(), &address, &wrong);
-        assert!(!here.status.success() && report(&here).contains("pairing: wrong code;"), "{attempt}: {}", report(&here));
+        assert!(!here.status.success() && report(&here).contains("wrong code;"), "{attempt}: {}", report(&here));
     }
     for code in [&wrong, &code] {
         let here = entered(console.path(), &address, code);

@@ -43,7 +43,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
         press(&mut console, "Release stop");
         read(&mut console, &format!("{watchdog}: 0."));
     }
-    read(&mut console, "Ready: all points passed");
+    read(&mut console, "Ready: all checks passed");
     read(&mut console, "Saved in ");
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
     assert!(record.passed && record.items.iter().all(|item| item.outcome != PointOutcome::Failed), "{record:?}");

@@ -48,7 +48,7 @@ pub(in crate::command) struct CheckRigArguments {
     /// Name of the person who checks, stored in the record
     #[arg(long, value_name = "NAME", default_value = "nima check rig")]
     by: String,
-    /// Print the record (JSON) instead of one line per point
+    /// Print the record (JSON) instead of one line per check
     #[arg(long)]
     json: bool,
 }

@@ -210,7 +210,7 @@ impl FrameWizard {
         });
     }
 
-    /// Finds the changes of the last saved calibration; none if the rig file has other values now.
+    /// Finds the changes of the last saved calibration; none if the rig file has different values now.
     fn look_for_undo(&mut self, binding: &Binding) {
         let Some(store) = &binding.store else { return };
         let wrist = [binding.sensor.as_str(), binding.tool.as_str()];

@@ -18,7 +18,7 @@ use super::ReadyRun;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadyRequest {
-    /// Repeat the failed points.
+    /// Repeat the failed checks.
     Again,
     /// Repeat the whole list.
     Whole,

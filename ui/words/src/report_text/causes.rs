@@ -1,4 +1,4 @@
-//! Texts about the ready check: causes and remedies of failed points.
+//! Texts about the ready check: causes and remedies of failed checks.
 
 use nima_core::{calibration::gravity::NotChecked, kinematics::START_MISS_M};
 use nima_machine::{

@@ -122,7 +122,7 @@ pub const OTHER_HAND: (Text, Text) = (
 pub const JAWS: (Text, Text) = (
     Text::of("Open or close the jaws", "Backen öffnen oder schließen"),
     Text::of(
-        "Of the controlled instrument, in a scene with rings",
+        "For the controlled instrument, in a scene with rings",
         "Am gesteuerten Instrument, in einer Szene mit Ringen",
     ),
 );

@@ -70,7 +70,7 @@ pub const LAYOUT_HOVER: Text = Text::of(
 pub const LAYOUT_NAME: Text = Text::of("Name of this layout", "Name dieses Layouts");
 pub const SAVE_LAYOUT: Text = Text::of("Save", "Sichern");
 pub const SAVE_LAYOUT_HOVER: Text = Text::of(
-    "Saves the present positions of the panels under this name",
+    "Saves the current positions of the panels under this name",
     "Sichert die jetzige Anordnung der Panels unter diesem Namen",
 );
 pub const NAME_LAYOUT_FIRST: Text = Text::of("Enter a name first", "Erst einen Namen eingeben");

@@ -25,7 +25,8 @@ pub const FOR_TRAINING_ONLY: Text = Text::of(
 );
 pub const NOT_USED: Text = Text::of("used for less than 10 s since the start", "seit dem Start unter 10 s genutzt");
 pub const IN_FILE: Text = Text::of("in the rig file", "in der Aufbaudatei");
-pub const OTHER_IN_FILE: Text = Text::of("the rig file now has other values", "die Aufbaudatei hat jetzt andere Werte");
+pub const OTHER_IN_FILE: Text =
+    Text::of("the rig file now has different values", "die Aufbaudatei hat jetzt andere Werte");
 pub const UNCHECKED: Text = Text::of("trained but not checked", "trainiert, aber nicht geprüft");
 pub const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
 pub const FUTURE: Text = Text::of("in the future", "in der Zukunft");
@@ -108,7 +109,7 @@ pub fn checked(day: &str, found: &str) -> String {
 /// used.
 pub fn in_use(outside: f64, without: f64) -> String {
     let fractions = text_format!(
-        "outside its training {:.0} % of the time, not used {:.0} %",
+        "outside its training data {:.0} % of the time, not used {:.0} %",
         "{:.0} % der Zeit außerhalb des Trainings, {:.0} % nicht genutzt",
         100.0 * outside,
         100.0 * without

@@ -130,7 +130,7 @@ pub const TO: Text = Text::of("To", "Bis");
 pub const TO_HOVER: Text = Text::of("The excerpt ends here", "Hier endet der Ausschnitt");
 pub const SAVE: Text = Text::of("Save excerpt", "Ausschnitt speichern");
 pub const SAVE_HOVER: Text = Text::of(
-    "Saves the part between From and To as a separate session, and keeps it",
+    "Saves the part between From and To as a separate, kept session",
     "Schreibt den Teil zwischen Von und Bis als eigene, gesicherte Sitzung",
 );
 pub const SAVE_DISABLED_HOVER: Text =

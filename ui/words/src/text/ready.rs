@@ -14,15 +14,15 @@ pub const WAITS: Text = Text::of(
 );
 pub const NOW: Text = Text::of("Now", "Jetzt");
 pub const BY_ITSELF: Text = Text::of("Running automatically; please wait", "Läuft automatisch; bitte warten");
-pub const PASSED: Text = Text::of("Ready: all points passed", "Bereit: alle Punkte bestanden");
-pub const FAILED: Text = Text::of("Not ready: see the points that failed", "Nicht bereit: siehe fehlerhafte Punkte");
+pub const PASSED: Text = Text::of("Ready: all checks passed", "Bereit: alle Punkte bestanden");
+pub const FAILED: Text = Text::of("Not ready: see the failed checks", "Nicht bereit: siehe fehlerhafte Punkte");
 pub const CLOSE: Text = Text::of("Continue to Engage", "Weiter zum Koppeln");
 pub const CLOSE_HOVER: Text =
     Text::of("Returns to the monitor, where Engage is highlighted", "Zurück zum Monitor, wo Koppeln hervorgehoben ist");
-pub const AGAIN: Text = Text::of("Repeat failed points", "Fehlerhafte Punkte wiederholen");
-pub const AGAIN_HOVER: Text = Text::of("Passed points keep their results", "Bestandene Punkte behalten ihr Ergebnis");
-pub const WHOLE: Text = Text::of("Repeat all points", "Alle Punkte wiederholen");
-pub const WHOLE_HOVER: Text = Text::of("Starts with the first point", "Beginnt mit dem ersten Punkt");
+pub const AGAIN: Text = Text::of("Repeat failed checks", "Fehlerhafte Punkte wiederholen");
+pub const AGAIN_HOVER: Text = Text::of("Passed checks keep their results", "Bestandene Punkte behalten ihr Ergebnis");
+pub const WHOLE: Text = Text::of("Repeat all checks", "Alle Punkte wiederholen");
+pub const WHOLE_HOVER: Text = Text::of("Starts with the first check", "Beginnt mit dem ersten Punkt");
 pub const BY: Text = Text::of("Checked by", "Prüfer");
 pub const BY_HOVER: Text = Text::of("This name is written into the record", "Dieser Name kommt ins Protokoll");
 

@@ -19,13 +19,13 @@ pub const OPEN_WINDOW_HOVER: Text = Text::of(
 );
 pub const CLOSE_WINDOW: Text = Text::of("Back to the main window", "Zurück ins Hauptfenster");
 pub const CLOSE_WINDOW_HOVER: Text = Text::of(
-    "Closes this window and shows the panel at its place in the main window",
+    "Closes this window and returns the panel to its place in the main window",
     "Schließt dieses Fenster und zeigt das Panel an seinem Platz im Hauptfenster",
 );
 pub const FIELD_IN_VIEW: Text =
     Text::of("This view shows the field in the main window", "Diese Ansicht zeigt das Feld im Hauptfenster");
 pub const LOCKED: Text = Text::of(
-    "The page in the main window has the machine: the controls here rest",
+    "A page in the main window is using the machine: the controls here are disabled",
     "Die Seite im Hauptfenster benutzt die Maschine: die Bedienelemente hier ruhen",
 );
 
@@ -46,7 +46,7 @@ pub const CALIBRATION_LAYOUT_HOVER: Text = Text::of(
 );
 pub const RESEARCH: Text = Text::of("Research", "Forschung");
 pub const RESEARCH_HOVER: Text = Text::of(
-    "Layout with every panel: prediction error, degrees, timing and gates are in sight too",
+    "Layout with every panel: prediction error, degrees, timing and gates are visible too",
     "Layout mit allen Panels: auch Vorhersagefehler, Grade, Timing und Sperren sind im Blick",
 );
 

@@ -91,7 +91,7 @@ pub const NEEDS_GOAL: Text =
     Text::of("The goal of this step is not met yet", "Das Ziel dieses Schritts ist noch nicht erreicht");
 pub const ANYWAY: Text = Text::of("Continue with less", "Mit weniger fortfahren");
 pub const ANYWAY_HOVER: Text = Text::of(
-    "Continues with what is recorded so far; the result may be less accurate, or not accepted",
+    "Continues with what has been recorded so far; the result may be less accurate, or not accepted",
     "Geht mit dem bisher Aufgezeichneten weiter; das Ergebnis kann ungenauer sein oder nicht angenommen werden",
 );
 

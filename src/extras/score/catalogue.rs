@@ -91,7 +91,7 @@ pub const MEASURES: [CatalogueDefinition; 59] = [
     hand(
         "out_of_view_share",
         "1",
-        "How much of the time the tip was out of the picture.",
+        "How much of the time the tip was out of view.",
         "Time with the tip outside the endoscope image over the time in which the hand is known.",
         "doi:10.1007/s00464-017-5873-6, table 2 (time outside camera view)",
     ),
@@ -121,14 +121,14 @@ pub const MEASURES: [CatalogueDefinition; 59] = [
         "drops_in_view",
         "count",
         "How often a ring fell where it could be picked up again.",
-        "Events: lost inside the picture.",
+        "Events: lost inside the image.",
         "Ritter and Scott 2007",
     ),
     trial(
         "drops_out_of_view",
         "count",
-        "How often a ring fell out of the picture.",
-        "Events: lost outside the picture.",
+        "How often a ring fell out of view.",
+        "Events: lost outside the image.",
         "Ritter and Scott 2007",
     ),
     trial(

@@ -111,8 +111,7 @@ pub(super) fn is_locked(_: &Path) -> io::Result<bool> {
     Ok(false)
 }
 
-/// Returns whether the file has been deleted while it is open: data written from now on are lost as soon as it is
-/// closed.
+/// Returns whether the file has been deleted while it is open: data written from now on are lost when it is closed.
 #[cfg(unix)]
 pub(super) fn is_deleted(file: &File) -> io::Result<bool> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0)

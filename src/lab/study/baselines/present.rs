@@ -10,7 +10,7 @@ impl Findings for BaselineReport {
     fn text(&self) -> String {
         // Writing into a String cannot fail.
         let mut text = format!(
-            "Mean error at the horizon over that of delayed reflection, start-up included; less is better, 1 is reflection.\n\
+            "Mean prediction error relative to that of delayed reflection, start-up included; lower is better, 1 is reflection.\n\
              In brackets: {}. Each delay is rounded to whole samples of a source.\n\
              Held-out split: constants of all modes were chosen on the recordings whose names begin with {}; all other recordings are held out.\n",
             self.interval,

@@ -92,7 +92,7 @@ impl HandReport {
         }
         writeln!(
             text,
-            "Hands that let go, *{}*: travel at p95 / farthest (mm), largest energy (mJ), median time until it is detected (ms).\n\n\
+            "Hands that let go, *{}*: 95th percentile / maximum of the travel (mm), maximum energy (mJ), median time to detection (ms).\n\n\
              | opens within (ms) | {} |\n|---{}|",
             kind.name,
             FORCES_N.map(|n| format!("{n} N")).join(" | "),

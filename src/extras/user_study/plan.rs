@@ -43,13 +43,13 @@ pub struct StudyPlan {
     /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that neither the assignment nor the
     /// rules of the study were changed.
     pub commitment: String,
-    /// When practice is over.
+    /// Criterion that ends practice, and the action if it is not met.
     pub practice: Option<PracticePlan>,
     /// Rule for the trials after which the participant is shown the result, and the criterion for skill.
     #[serde(default)]
     pub feedback: ResultDisplay,
     pub breaks: Option<Breaks>,
-    /// Which questionnaires are filled in, and when.
+    /// Questionnaires, and when they are filled in.
     pub questionnaires: Questionnaires,
     pub exclusion: Vec<ExclusionRule>,
     pub participants: Vec<Participant>,
@@ -62,7 +62,7 @@ pub struct PracticePlan {
     pub criterion: TaskCriterion,
 }
 
-/// After which trials the participant is shown the result.
+/// Trials after which the participant is shown the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ResultDisplay {

@@ -18,7 +18,7 @@ use crate::emulators::{
     wires::{tcp, udp},
 };
 
-/// Returns the values that the sensor measures at a time, s since the emulator began.
+/// Function that returns the values that the sensor measures at a time, s since the emulator began.
 pub type AtiBody = Box<dyn FnMut(f64) -> ForceReading + Send>;
 
 /// Counts per newton and per newton metre, as on most real sensors.

@@ -24,8 +24,8 @@ use nima_devices::{
 
 use crate::emulators::Emulator;
 
-/// Returns the values that the sensor measures at a time, s since the emulator began; readings of the inertial unit are
-/// used if frames contain them.
+/// Function that returns the values that the sensor measures at a time, s since the emulator began; readings of the
+/// inertial unit are used if frames contain them.
 pub type BotaBody = Box<dyn FnMut(f64) -> ForceReading + Send>;
 
 /// Properties of an emulated sensor.

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2};
 use nima_endoscope::{Checkerboard, Lens, board::Portrait};
 
-/// Returns the pose of the board in front of the lens at a time, s since the emulator began.
+/// Function that returns the pose of the board in front of the lens at a time, s since the emulator began.
 pub type BoardHands = Box<dyn FnMut(f64) -> Isometry3<f64> + Send>;
 
 /// Duration of holding a pose, and of the movement to the next one, s. Long enough for the console to notice that the

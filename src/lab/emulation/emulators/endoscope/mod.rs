@@ -38,7 +38,7 @@ pub struct EndoscopeInstrument {
     pub trocar_m: Vector3<f64>,
 }
 
-/// Returns the instruments at a time, s since the emulator began.
+/// Function that returns the instruments at a time, s since the emulator began.
 pub type EndoscopeBody = Box<dyn FnMut(f64) -> Vec<EndoscopeInstrument> + Send>;
 
 /// Properties of an emulated endoscope.

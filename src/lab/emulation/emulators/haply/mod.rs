@@ -23,8 +23,8 @@ use nima_devices::haply::{
 
 use crate::emulators::{EmulatedFault, Emulator, EmulatorTurn, WireEnd, WirePeer, wires::terminal};
 
-/// Returns the state of the grip at a time (s since the emulator began) with this force on the hand (N, in the device's
-/// axes).
+/// Function that returns the state of the grip at a time (s since the emulator began) with this force on the hand (N,
+/// in the device's axes).
 pub type HaplyBody = Box<dyn FnMut(f64, &Vector3<f64>) -> HaplyState + Send>;
 
 /// Requests of the manufacturer's client that our driver does not use: torques and angles of the joints, a position.

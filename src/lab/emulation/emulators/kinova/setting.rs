@@ -13,7 +13,7 @@ pub(super) struct KinovaSetting {
     checked: SettingCheck,
 }
 
-/// Returns the stored form of an offered value, or why it is refused.
+/// Function that returns the stored form of an offered value, or why it is refused.
 type SettingCheck = Box<dyn Fn(&[u8]) -> AnswerPayload + Send>;
 
 impl KinovaSetting {

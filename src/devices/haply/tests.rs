@@ -59,7 +59,7 @@ impl ByteStream for Fake {
         if inner.gone {
             return Err(Loss::Disconnected);
         }
-        // As few bytes at a time as a serial port may deliver.
+        // A serial port may deliver this few bytes at a time.
         let count = inner.waiting.len().min(buffer.len()).min(STATE_BYTES);
         buffer.iter_mut().zip(inner.waiting.drain(..count)).for_each(|(to, byte)| *to = byte);
         Ok(count)

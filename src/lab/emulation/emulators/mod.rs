@@ -89,7 +89,7 @@ pub trait Emulator: Send {
     /// Called with data from a client; empty at first if the client has only connected.
     fn receive(&mut self, from: WirePeer, bytes: &[u8], turn: &mut EmulatorTurn<'_>);
 
-    /// Called when time has passed, at most every 5 ms and not later than [`due_s`](Self::due_s); also while the
+    /// Called when time has passed, at most every 5 ms and not later than [`due_s`](Self::due_s); even while the
     /// connection is cut.
     fn pass(&mut self, turn: &mut EmulatorTurn<'_>);
 

@@ -149,7 +149,8 @@ pub fn same_serial(one: &str, other: &str) -> bool {
         let serial = serial.trim().to_uppercase();
         serial.trim_start_matches("SN").trim_start_matches('0').to_owned()
     };
-    !number(one).is_empty() && number(one) == number(other)
+    let [one, other] = [one, other].map(number);
+    !one.is_empty() && one == other
 }
 
 #[cfg(test)]

@@ -122,7 +122,11 @@ impl FromStr for Address {
         if text.starts_with("/dev/") {
             return camera(text).or_else(wrong);
         }
-        let Some((scheme, rest)) = text.split_once("://") else { return Ok(Self::File(text.into())) };
+        let Some((scheme, rest)) = text.split_once("://") else {
+            // A user and a password without `http://`: as a path, it would be shown.
+            let has_login = open.len() < text.len() && text.contains('@');
+            return if has_login { wrong("begin it with http:// or rtsp://") } else { Ok(Self::File(text.into())) };
+        };
         match scheme.to_ascii_lowercase().as_str() {
             "http" => endpoint(rest, 80).map(Self::Http).or_else(wrong),
             "rtsp" => endpoint(rest, 554).map(Self::Rtsp).or_else(wrong),
@@ -272,6 +276,8 @@ mod tests {
 
     #[test]
     fn a_password_in_the_settings_of_an_address_is_sent_and_never_shown() {
+        let mistyped = "eva:secret@cam/video".parse::<Address>().unwrap_err().to_string();
+        assert!(!mistyped.contains("secret") && mistyped.contains("http://"), "{mistyped}");
         for (text, shown) in [
             ("http://cam/video?pwd=secret&user=eva", "http://cam:80/video?pwd=&user=eva"),
             ("http://cam:81/?user=eva&password=secret", "http://cam:81/?user=eva&password="),

@@ -5,7 +5,11 @@ const SECRET_WORDS: [&str; 7] = ["pas", "pw", "psw", "token", "key", "secret", "
 
 /// Returns an address without user and password, and without the values of settings that give access.
 pub fn public_address(address: &str) -> String {
-    let Some((scheme, rest)) = address.split_once("://") else { return address.to_owned() };
+    let Some((scheme, rest)) = address.split_once("://") else {
+        // A scheme that was forgotten or mistyped; a path has no login.
+        let login = address.rsplit_once('@').filter(|(login, _)| login.contains(':') && !login.starts_with(['/', '.']));
+        return without_secrets(login.map_or(address, |(_, rest)| rest));
+    };
     let (authority, path) = parts(rest);
     let (host, path) = match (authority.rsplit_once('@'), path.rsplit_once('@')) {
         (Some((_, host)), _) => (host, path),
@@ -13,11 +17,7 @@ pub fn public_address(address: &str) -> String {
         (None, Some((_, rest))) if !is_host(authority) => parts(rest),
         _ => (authority, path),
     };
-    let (path, query) = path.split_once('?').map_or((path, None), |(path, query)| (path, Some(query)));
-    // Some cameras have their settings in the path: `rtsp://HOST/user=NAME&password=PASSWORD&channel=1`.
-    let path = without_secrets(path, &['/', '&', ';']);
-    let query = query.map_or_else(String::new, |query| format!("?{}", without_secrets(query, &['&', ';'])));
-    format!("{scheme}://{host}{path}{query}")
+    format!("{scheme}://{host}{}", without_secrets(path))
 }
 
 /// Returns the authority of an address without its scheme, and the path with the query.
@@ -31,15 +31,16 @@ fn is_host(authority: &str) -> bool {
     port.ends_with(']') || port.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Removes the values of settings that give access. One of these characters ends a setting.
-fn without_secrets(settings: &str, ends: &[char]) -> String {
+/// Removes the values of settings that give access, of a path with its query. A value extends to the next `&` or `;`: some
+/// cameras have their settings in the path, `rtsp://HOST/user=NAME&password=PASSWORD&channel=1`, with any password.
+fn without_secrets(path: &str) -> String {
+    const ENDS: [char; 2] = ['&', ';'];
     let mut open = String::new();
-    for setting in settings.split_inclusive(ends) {
+    for setting in path.split_inclusive(ENDS) {
         match secret_at(setting) {
             Some(at) => {
-                let end = setting.trim_end_matches(ends).len();
                 open += &setting[..at];
-                open += &setting[end..];
+                open += &setting[setting.trim_end_matches(ENDS).len()..];
             }
             None => open += setting,
         }
@@ -51,7 +52,7 @@ fn without_secrets(settings: &str, ends: &[char]) -> String {
 fn secret_at(setting: &str) -> Option<usize> {
     let mut begin = 0;
     setting.match_indices('=').map(|(at, _)| at + 1).find(|end| {
-        let name = setting[begin..*end].to_ascii_lowercase();
+        let name = setting[begin..*end].rsplit(['/', '?']).next().unwrap_or_default().to_ascii_lowercase();
         begin = *end;
         SECRET_WORDS.iter().any(|word| name.contains(word))
     })
@@ -80,6 +81,12 @@ mod tests {
             ),
             ("rtsp://cam/user=eva_password=s3_cret_channel=1.sdp", "rtsp://cam/user=eva_password="),
             ("http://eva:s3/cr?et@cam:81/video", "http://cam:81/video"),
+            ("rtsp://cam/user=eva&password=a/b?c&channel=1", "rtsp://cam/user=eva&password=&channel=1"),
+            ("http://cam/keys/video?size=2", "http://cam/keys/video?size=2"),
+            ("eva:s3cret@cam/video", "cam/video"),
+            ("http:/eva:s3cret@cam/video?pw=x", "cam/video?pw="),
+            ("/other?pwd=s3cret&size=2", "/other?pwd=&size=2"),
+            ("/dev/v4l/by-path/pci-0:1:a@b", "/dev/v4l/by-path/pci-0:1:a@b"),
             ("http://127.0.0.1:47160/", "http://127.0.0.1:47160/"),
             ("http://[::1]/a@b", "http://[::1]/a@b"),
             ("http://cam:81/a@b?c=d", "http://cam:81/a@b?c=d"),

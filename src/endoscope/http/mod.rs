@@ -16,6 +16,7 @@ use std::{
 };
 
 use http_auth::{PasswordClient, PasswordParams};
+use nima_files::public_address;
 
 use self::answer::{HttpAnswer, HttpFault, ImagePart};
 use crate::{Address, CompressedFrame, EndoscopeError, Endpoint, ImageSource};
@@ -158,14 +159,9 @@ fn redirected(from: &Endpoint, location: &str) -> Option<Endpoint> {
     Some(Endpoint { path, ..from.clone() })
 }
 
-/// Returns an address from the other end for a message: short, and without its query, which may contain a password.
+/// Returns an address from the other end for a message: short, and without passwords.
 fn shown(location: &str) -> String {
-    let open = location.split(['?', '#']).next().unwrap_or_default();
-    let open = match open.split_once("://") {
-        Some((scheme, rest)) => format!("{scheme}://{}", rest.rsplit_once('@').map_or(rest, |(_, host)| host)),
-        None => open.to_owned(),
-    };
-    open.chars().filter(char::is_ascii_graphic).take(100).collect()
+    public_address(location).chars().filter(char::is_ascii_graphic).take(100).collect()
 }
 
 /// Connects to the camera and requests its images.

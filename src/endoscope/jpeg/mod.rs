@@ -120,7 +120,7 @@ pub fn decode(jpeg: &[u8]) -> Result<DecodedImage, Damage> {
 /// (4:2:0) as sent by cameras: for emulators and tests.
 ///
 /// # Panics
-/// If there are fewer bytes than pixels, or a side is 0 or above 65535.
+/// If there are fewer than three bytes for each pixel, or a side is 0 or above 65535.
 pub fn encode(rgb: &[u8], size_px: [usize; 2], quality: u8) -> Vec<u8> {
     let mut jpeg = Vec::new();
     let mut encoder = Encoder::new(&mut jpeg, quality);

@@ -119,7 +119,8 @@ fn report(place: &str, error: &retina::Error, reach: Option<&Endpoint>) -> Endos
     if begins("Error reading") || begins("Error writing") || begins("Timeout") {
         return EndoscopeError::Closed { place };
     }
-    let first = text.lines().next().unwrap_or_default();
+    // Some of them quote an address, which may contain a password.
+    let first = text.lines().next().and_then(|line| line.split("rtsp://").next()).unwrap_or_default();
     EndoscopeError::Unreadable { place, reason: first.chars().filter(|c| !c.is_control()).take(120).collect() }
 }
 

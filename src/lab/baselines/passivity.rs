@@ -4,10 +4,10 @@
 //!
 //! The energy at each port is split by its direction. The follower accumulates the energy that the tissue gives to the
 //! link, `E_in`, which never decreases, and sends it with the force. The leader accumulates the energy that the link
-//! gives to the hand, `E_out`, and must not give more than was put in: observer `W(k) = E_in(k - D) - E_out(k) + E_pc(k
-//! - 1)`; where `W` is negative, the controller adds the damping `alpha = -W / (v^2 T)`, which dissipates `E_pc +=
-//! alpha v^2 T`. The deficit of a tick is at most the energy given in that tick, so the damping never reverses the
-//! force.
+//! gives to the hand, `E_out`, and must not give more than was put in: observer
+//! `W(k) = E_in(k - D) - E_out(k) + E_pc(k - 1)`; where `W` is negative, the controller adds the damping
+//! `alpha = -W / (v^2 T)`, which dissipates `E_pc += alpha v^2 T`. The deficit of a tick is at most the energy given in
+//! that tick, so the damping never reverses the force.
 //!
 //! The observer and controller at the follower are omitted, because the motion reaches the follower without delay in
 //! this loop.

@@ -172,7 +172,7 @@ mod tests {
             (JawsSettings { ratio: [f64::NAN, 1.0, 1.0, 1.0], ..usual }, "ratio"),
             (JawsSettings { grip_per_gripper: -1.0, ..usual }, "grip_per_gripper"),
             (JawsSettings { grip_n_per_a: 1e4, ..usual }, "grip_n_per_a"),
-            (JawsSettings { pid, ..usual }, "pid"),
+            (JawsSettings { pid, ..usual }, "pid.integral_per_s"),
         ] {
             let words = settings.check(None).unwrap_err().to_string();
             assert!(words.starts_with(key), "{words}");

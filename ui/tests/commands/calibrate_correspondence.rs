@@ -173,7 +173,7 @@ fn columns_of_other_names_are_mapped_and_a_bad_mapping_is_refused() {
         (&[wrist, "f2xyz=tissue_x,tissue_y"], "\"f2xyz\" takes 3 columns, not 2"),
         (&[wrist, "f2xyz=tissue_x,tissue_y,depth"], "no column \"depth\""),
         (&["xyz=wrist_x,wrist_y,wrist_z"], "there is no quantity \"xyz\"; use one of f1x, f1y"),
-        (&[wrist, "f2xyz=tissue_x,tissue_y,tissue_z*0"], "the scale \"0\" is not a number other than zero"),
+        (&[wrist, "f2xyz=tissue_x,tissue_y,tissue_z*0"], "the scale \"0\" must be a number other than zero"),
         (&[wrist, "f2xyz=tissue_x,tissue_y,tissue_z*-1", turned], "opposite forces"),
     ];
     for (maps, words) in refused {

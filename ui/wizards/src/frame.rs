@@ -83,7 +83,7 @@ pub trait Wizard: std::fmt::Debug {
     fn tick(&mut self, tick: &Tick, rate_hz: f64);
     /// Returns the current instruction to the person at the arm.
     fn prompt(&self) -> Prompt;
-    /// Checks whether the next step may start; the error is the reason.
+    /// `Ok` if the next step may start; the error is the reason why not.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
     /// Draws a step before the last.
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest>;

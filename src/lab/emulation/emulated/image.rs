@@ -1,6 +1,7 @@
 //! The image of the rig's endoscope: both instruments of the simulated world at their true positions.
 
 use nima_endoscope::{Address, Endpoint};
+use nima_files::public_address;
 use nima_machine::{
     config::EndoscopeConfig,
     rig::{RigSettings, Side},
@@ -23,7 +24,10 @@ impl EmulatedRig {
         devices: &RigSettings,
         scene: &Scene,
     ) -> Result<(), EmulatedRigError> {
-        let place = |wanted| EmulatedRigError::Place { device: NAME.to_owned(), place: endoscope.url.clone(), wanted };
+        let place = |wanted| {
+            let place = public_address(&endoscope.url);
+            EmulatedRigError::Place { device: NAME.to_owned(), place, wanted }
+        };
         let Ok(Address::Http(Endpoint { host, port, .. })) = endoscope.url.parse() else {
             return Err(place("in [endoscope] of an emulated rig, set url = \"http://127.0.0.1:PORT/\""));
         };

@@ -107,7 +107,7 @@ struct RenderState {
     coders: Coders,
 }
 
-/// Encoders for all clients; each is created for its first client.
+/// Coders for all clients; that of H.264 is created for its first client.
 struct Coders {
     quality: u8,
     h264: Option<h264::H264Encoder>,

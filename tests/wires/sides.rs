@@ -107,10 +107,22 @@ fn exchange_servos(devices: &mut RigSettings) {
     std::mem::swap(&mut right.servos.as_mut().unwrap().port, &mut left.servos.as_mut().unwrap().port);
 }
 
+fn exchange_handles(devices: &mut RigSettings) {
+    let [right, left] = sets(devices).map(|set| set.handle.force_dimension_mut().unwrap());
+    std::mem::swap(&mut right.emulator, &mut left.emulator);
+}
+
 fn nameless_arms(devices: &mut RigSettings) {
     for set in sets(devices) {
         set.arm.kinova_mut().unwrap().serial_number = None;
     }
+}
+
+/// As if both addresses led to one arm, for instance through a name and a number.
+fn one_serial_number(devices: &mut RigSettings) {
+    let [right, left] = sets(devices);
+    let serial = right.arm.kinova_mut().unwrap().serial_number.clone();
+    left.arm.kinova_mut().unwrap().serial_number = serial;
 }
 
 fn nameless_sensors(devices: &mut RigSettings) {
@@ -153,15 +165,7 @@ fn checked(devices: &mut RigSettings) {
 
 fn rows() -> Vec<Row> {
     vec![
-        Row {
-            wire: |devices| {
-                let [right, left] = sets(devices);
-                let right = right.handle.force_dimension_mut();
-                let left = left.handle.force_dimension_mut();
-                std::mem::swap(&mut right.unwrap().emulator, &mut left.unwrap().emulator);
-            },
-            ..row("cables of the handles", ReportSource::Harmless)
-        },
+        Row { wire: exchange_handles, ..row("cables of the handles", ReportSource::Harmless) },
         Row {
             file: |devices| {
                 let [right, left] = sets(devices);
@@ -248,12 +252,7 @@ fn rows() -> Vec<Row> {
             ..row("trocars in the file", swapped(SideSwap::Trocars))
         },
         Row {
-            // As if both addresses led to one arm, for instance through a name and a number.
-            wire: |devices| {
-                let [right, left] = sets(devices);
-                let serial = right.arm.kinova_mut().unwrap().serial_number.clone();
-                left.arm.kinova_mut().unwrap().serial_number = serial;
-            },
+            wire: one_serial_number,
             file: nameless_arms,
             ..row("one serial number for both arms", ReportSource::Obstacle(EngageBlocker::OneArm))
         },

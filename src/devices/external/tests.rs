@@ -138,7 +138,7 @@ fn a_handle_tells_where_it_is_and_is_given_a_force_within_its_limits() {
 
     let lever = Lever::default();
     handle.attach(&lever);
-    lever.pull();
+    assert!(lever.pull());
     assert_eq!(report(&mut bench, &mut handle, Vector3::x()), (false, Vector3::zeros(), 0.0));
     handle.switch_force(true);
     drop(handle);

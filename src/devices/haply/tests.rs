@@ -133,7 +133,7 @@ fn it_tells_where_the_grip_is_from_the_centre_and_takes_a_force_within_its_limit
     ticks(&mut driver, &mut now_s, 1, Vector3::x());
     let lever = Lever::default();
     driver.attach(&lever);
-    lever.pull();
+    assert!(lever.pull());
     ticks(&mut driver, &mut now_s, 1, Vector3::x());
     assert_eq!(fake.newest_n(), Vector3::zeros());
     driver.switch_force(true);

@@ -29,7 +29,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 pub(super) struct Pulse {
     beat_ns: AtomicU64,
     driven: AtomicBool,
-    /// Silence of the loop when the emergency releases were called, ns; zero if they were not called.
+    /// Silence of the loop if the emergency releases were called, ns; zero if they were not called.
     pulled_ns: AtomicU64,
 }
 
@@ -38,7 +38,15 @@ impl Pulse {
     pub(super) fn beat(&self, now_ns: u64, driven: bool) {
         self.driven.store(driven, Ordering::Relaxed);
         // The beat is stored last, so that a reader of the new beat also has the state of the drives that belongs to it.
-        self.beat_ns.store(now_ns, Ordering::Release);
+        let before_ns = self.beat_ns.swap(now_ns, Ordering::AcqRel);
+        self.lengthen(now_ns.saturating_sub(before_ns));
+    }
+
+    /// Extends the stored silence to this one: the supervisor stores it when the limit is passed, but it may last longer.
+    fn lengthen(&self, silent_ns: u64) {
+        if self.pulled_ns.load(Ordering::Acquire) > 0 {
+            self.pulled_ns.fetch_max(silent_ns, Ordering::AcqRel);
+        }
     }
 
     /// Replaces a heartbeat while this watchdog is tested: to the supervisor, the loop appears to be hung with its
@@ -47,8 +55,10 @@ impl Pulse {
         self.driven.store(true, Ordering::Relaxed);
     }
 
-    /// Returns how long the loop had been silent, s, if the levers were pulled since the last call of this function.
-    pub(super) fn take_pulled(&self) -> Option<f64> {
+    /// Returns how long the loop had been silent, s, if the levers were pulled since the last call of this function; a
+    /// silence that has not ended yet counts until now.
+    pub(super) fn take_pulled(&self, now_ns: u64) -> Option<f64> {
+        self.lengthen(now_ns.saturating_sub(self.beat_ns.load(Ordering::Acquire)));
         match self.pulled_ns.swap(0, Ordering::AcqRel) {
             0 => None,
             ns => Some(ns as f64 * 1e-9),
@@ -73,6 +83,8 @@ impl Supervisor {
             }
             let limit_ns = (STALL_MAX_S * 1e9) as u64;
             let mut pulled = false;
+            // Levers that are still to be pulled in this stall.
+            let mut waiting = vec![false; levers.len()];
             while !flag.load(Ordering::Acquire) {
                 std::thread::sleep(LOOK_EVERY);
                 let silent_ns = os::monotonic_ns().saturating_sub(pulse.beat_ns.load(Ordering::Acquire));
@@ -80,8 +92,13 @@ impl Supervisor {
                 let stalled = pulse.driven.load(Ordering::Relaxed) && silent_ns > limit_ns;
                 // Once for each stall: the emergency release of some devices closes a connection, and a second call
                 // would find it closed.
+                if stalled != pulled {
+                    waiting.fill(stalled);
+                }
+                for (lever, waits) in levers.iter().zip(&mut waiting).filter(|(_, waits)| **waits) {
+                    *waits = !lever.pull();
+                }
                 if stalled && !pulled {
-                    levers.iter().for_each(Lever::pull);
                     pulse.pulled_ns.store(silent_ns, Ordering::Release);
                 }
                 pulled = stalled;
@@ -116,13 +133,53 @@ mod tests {
         let supervisor = Supervisor::start(Arc::clone(&pulse), vec![lever], true).unwrap();
         pulse.beat(os::monotonic_ns(), false);
         std::thread::sleep(Duration::from_millis(80));
-        assert_eq!((count.load(Ordering::Relaxed), pulse.take_pulled()), (0, None), "nothing is driven");
+        let taken = pulse.take_pulled(os::monotonic_ns());
+        assert_eq!((count.load(Ordering::Relaxed), taken), (0, None), "nothing is driven");
         pulse.beat(os::monotonic_ns(), true);
         std::thread::sleep(Duration::from_millis(150));
         assert_eq!(count.load(Ordering::Relaxed), 1);
-        let after_s = pulse.take_pulled().unwrap();
-        println!("levers pulled after {:.1} ms", after_s * 1e3);
-        assert!(after_s > STALL_MAX_S);
+        let after_s = pulse.take_pulled(os::monotonic_ns()).unwrap();
+        assert!(after_s > 0.14, "the whole silence counts, not only until the levers were pulled: {after_s} s");
         drop(supervisor);
+    }
+
+    #[test]
+    fn a_silence_that_ends_within_a_tick_counts_to_its_end() {
+        let pulse = Pulse::default();
+        pulse.beat(0, true);
+        pulse.pulled_ns.store(22_000_000, Ordering::Release);
+        // A write to a device that took two seconds.
+        pulse.beat(2_000_000_000, true);
+        let silent_s = pulse.take_pulled(2_001_000_000);
+        assert_eq!(silent_s, Some(2.0));
+        assert_eq!(pulse.take_pulled(2_002_000_000), None, "it is reported once");
+    }
+
+    #[test]
+    fn a_lever_that_another_thread_holds_is_pulled_later_and_delays_no_other() {
+        let pulse = Arc::new(Pulse::default());
+        let levers = [Lever::default(), Lever::default()];
+        let counts: [Arc<AtomicU64>; 2] = std::array::from_fn(|_| Arc::default());
+        for (lever, count) in levers.iter().zip(&counts) {
+            let count = Arc::clone(count);
+            lever.attach(move || {
+                if count.fetch_add(1, Ordering::Relaxed) == 0 {
+                    std::thread::sleep(Duration::from_millis(200));
+                }
+            });
+        }
+        let count = |at: usize| counts[at].load(Ordering::Relaxed);
+        std::thread::scope(|scope| {
+            scope.spawn(|| levers[0].pull());
+            while count(0) == 0 {
+                std::thread::yield_now();
+            }
+            pulse.beat(os::monotonic_ns(), true);
+            let _supervisor = Supervisor::start(Arc::clone(&pulse), levers.to_vec(), true).unwrap();
+            std::thread::sleep(Duration::from_millis(100));
+            assert_eq!([count(0), count(1)], [1, 1]);
+            std::thread::sleep(Duration::from_millis(300));
+            assert_eq!([count(0), count(1)], [2, 1]);
+        });
     }
 }

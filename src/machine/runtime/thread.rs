@@ -230,7 +230,7 @@ impl Realtime {
     fn tick(&mut self, timing: &mut Timing, woke_ns: u64) {
         let inputs = self.rig.read(timing.now_s);
         let read_ns = os::monotonic_ns();
-        if let Some(silent_s) = self.pulse.take_pulled() {
+        if let Some(silent_s) = self.pulse.take_pulled(read_ns) {
             report(&mut self.tap, Operation::Stall { silent_s, t_s: timing.now_s });
             self.control.notice_stall(silent_s, timing.now_s);
         }

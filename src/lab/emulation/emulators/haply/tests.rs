@@ -67,7 +67,7 @@ fn the_hand_feels_the_force_and_gives_way_and_the_lever_reaches_it_without_the_l
         // The loop of this test sleeps for a millisecond between two ticks.
         assert!(rate_hz > 300.0 || driver.health().readings < 300, "{rate_hz} Hz");
         // From here on the loop has stopped.
-        lever.pull();
+        assert!(lever.pull());
         std::thread::sleep(Duration::from_millis(20));
         assert_eq!(felt.force_n(), Vector3::zeros());
         driver.switch_force(true);
@@ -75,7 +75,7 @@ fn the_hand_feels_the_force_and_gives_way_and_the_lever_reaches_it_without_the_l
         drop(driver);
         std::thread::sleep(Duration::from_millis(20));
         assert_eq!(felt.force_n(), Vector3::zeros(), "closing takes the force away");
-        lever.pull();
+        assert!(lever.pull());
         let again = HaplyDriver::open(&HaplySettings::at(serving.endpoint.as_str()));
         assert!(again.is_ok(), "the lever of a closed one holds no line: {:?}", again.err());
     });

@@ -89,6 +89,16 @@ fn a_machine_that_is_not_paired_or_paired_with_a_wrong_code_is_refused() {
 }
 
 #[test]
+fn a_pairing_that_would_wait_too_long_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (wait, words) in [("601", "at most 600 seconds"), ("1e9", "at most 600 seconds"), ("-1", "seconds above 0")] {
+        let refused = at(folder.path(), &["pair", "--offer", "--wait", wait]).wait_with_output().unwrap();
+        assert!(!refused.status.success() && report(&refused).contains(words), "{wait}: {}", report(&refused));
+    }
+    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none(), "no key was created");
+}
+
+#[test]
 fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
     let _alone = alone();
     let follower = tempfile::tempdir().unwrap();

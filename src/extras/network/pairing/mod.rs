@@ -27,14 +27,19 @@ use crate::{
 };
 pub use attempts::{Attempts, PAUSE, WRONG_MAX};
 use exchange::{Console, LEN, Step, datagram, read};
+use offer::GUESSES_MAX;
 
-/// Digits of a code. At the rate of an offer ([`offer`]) a stranger guesses it with a chance of one in a million.
+/// Digits of a code. An offer ends after [`GUESSES_MAX`] guesses, so that a stranger has a chance of one in a million.
 const DIGITS: usize = 9;
 /// A request is repeated after this time.
 const AGAIN: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_millis(5);
 /// An exchange without progress for this long begins again.
 const STUCK: Duration = Duration::from_secs(3);
+/// Usual time to wait for the other side; strangers cannot end an offer earlier.
+pub const WAIT_USUAL: Duration = Duration::from_mins(2);
+/// Maximum time to wait: enough to walk to the other machine.
+pub const WAIT_MAX: Duration = Duration::from_mins(10);
 
 /// Why pairing failed.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +61,12 @@ pub enum PairingError {
     /// Too many wrong codes.
     #[error("pairing: too many wrong codes; wait {wait_s:.0} s, then try again")]
     TooMany { wait_s: f64 },
+    /// Too many wrong codes reached an offer.
+    #[error(
+        "pairing: {GUESSES_MAX} wrong codes arrived, so a third party is probably guessing; nothing was saved. Permit only the console's \
+         address in the firewall, then start the offer again"
+    )]
+    Guessed,
     /// The system provides no random numbers, or the file of the wrong codes cannot be used.
     #[error(transparent)]
     Keys(#[from] KeyError),

@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    Code, NAP, Pairing, PairingError,
+    Code, NAP, Pairing, PairingError, WAIT_USUAL,
     exchange::{ANSWER, ASK, COOKIE, Content, DONE, Follower, HELLO, LEN, PROVE, content, datagram, read},
     next,
 };
@@ -23,11 +23,16 @@ use crate::{
 const PER_S: f64 = 8.0;
 const PER_S_ADDRESS: f64 = 1.0;
 const AT_ONCE: f64 = 4.0;
-/// Number of guesses after which the code is replaced: a chance of one in a million.
+/// Number of guesses after which an offer ends: a chance of one in a million, however long the offer lasts. The code is
+/// never replaced, because that would give further guesses, and would change the code while a person enters it.
 pub(super) const GUESSES_MAX: u32 = 1000;
 /// Maximum number of open exchanges, and of addresses whose rates are stored; the oldest are dropped.
 const EXCHANGES: usize = 32;
 const ADDRESSES: usize = 64;
+/// Exchanges that can begin at once, in total.
+const ALL_AT_ONCE: f64 = 2.0 * PER_S;
+// A stranger at many addresses cannot end an offer within the usual time.
+const _: () = assert!((ALL_AT_ONCE + PER_S * WAIT_USUAL.as_secs() as f64) as u32 <= GUESSES_MAX);
 /// The last answer is repeated for this long if its request is repeated, because it may have been lost.
 const REPEATS: Duration = Duration::from_secs(1);
 
@@ -58,7 +63,7 @@ impl<'a> Offer<'a> {
             code: Code::random()?,
             guesses: 0,
             cookies: Cookies::new(0.0)?,
-            all: RateBucket::new(PER_S, 2.0 * PER_S),
+            all: RateBucket::new(PER_S, ALL_AT_ONCE),
             addresses: Vec::new(),
             open: Vec::new(),
         })
@@ -70,7 +75,7 @@ impl<'a> Offer<'a> {
         (token, step, asked): (u64, u8, &Content),
         from: SocketAddr,
         now_s: f64,
-    ) -> Result<Option<OfferAnswer>, KeyError> {
+    ) -> Result<Option<OfferAnswer>, PairingError> {
         let known = self.open.iter().position(|open| (open.from, open.token) == (from, token));
         let (step, answer, console) = match (step, known) {
             (HELLO, _) => (COOKIE, content(&[&self.cookies.make(from, token, now_s)]), None),
@@ -88,11 +93,9 @@ impl<'a> Offer<'a> {
         Ok(Some((datagram(token, step, &answer), console)))
     }
 
-    fn begin(&mut self, token: u64, asked: &Content, from: SocketAddr) -> Result<Option<Content>, KeyError> {
+    fn begin(&mut self, token: u64, asked: &Content, from: SocketAddr) -> Result<Option<Content>, PairingError> {
         if self.guesses >= GUESSES_MAX {
-            self.code = Code::random()?;
-            self.guesses = 0;
-            self.open.clear();
+            return Err(PairingError::Guessed);
         }
         let Some(follower) = Follower::new(self.code, self.keys.public(), asked) else { return Ok(None) };
         self.guesses += 1;
@@ -114,27 +117,25 @@ impl<'a> Offer<'a> {
             self.addresses.push((ip, RateBucket::new(PER_S_ADDRESS, AT_ONCE)));
             self.addresses.len() - 1
         });
-        self.addresses[at].1.spend(1.0, now_s) && self.all.spend(1.0, now_s)
+        let (_, own) = &mut self.addresses[at];
+        // An address loses nothing if the others have left nothing: it gets the next exchange that may begin.
+        own.level(now_s) >= 1.0 && self.all.spend(1.0, now_s) && own.spend(1.0, now_s)
     }
 }
 
 impl Pairing<'_> {
-    /// Runs the follower's side: listens at this address, and calls `show` with the code to show, again when it is
-    /// replaced. Returns the key of the console at which the code was entered.
+    /// Runs the follower's side: listens at this address, and calls `show` with the code to show. Returns the key of the
+    /// console at which the code was entered.
     ///
     /// # Errors
-    /// [`PairingError`] if the address cannot be used, or no console has the code.
-    pub fn offer(&self, at: SocketAddr, mut show: impl FnMut(Code)) -> Result<PublicKey, PairingError> {
+    /// [`PairingError`] if the address cannot be used, if no console has the code, or after too many guesses.
+    pub fn offer(&self, at: SocketAddr, show: impl FnOnce(Code)) -> Result<PublicKey, PairingError> {
         let begin = Instant::now();
         let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
         let mut offer = Offer::new(self.keys)?;
-        let mut shown = None;
+        show(offer.code);
         let mut buffer = [0; 2 * LEN];
         while self.goes_on(begin) {
-            if shown != Some(offer.code) {
-                show(offer.code);
-                shown = Some(offer.code);
-            }
             let Some((len, from)) = next(&socket, &mut buffer) else {
                 sleep(NAP);
                 continue;

@@ -6,7 +6,7 @@ use std::{
 
 use super::{
     exchange::{ANSWER, ASK, COOKIE, Content, DONE, HELLO, PROVE, content},
-    offer::{GUESSES_MAX, Offer},
+    offer::Offer,
     *,
 };
 use crate::{
@@ -167,14 +167,38 @@ fn strangers_neither_end_an_offer_nor_keep_the_console_out() {
 }
 
 #[test]
-fn a_code_is_replaced_after_a_thousand_guesses() {
-    let [follower, stranger] = [(); 2].map(|()| NetworkKeys::random().unwrap());
+fn an_offer_ends_after_a_thousand_guesses_and_never_changes_its_code() {
+    let [follower, console] = [(); 2].map(|()| NetworkKeys::random().unwrap());
     let mut there = Stranger { offer: Offer::new(&follower).unwrap(), t_s: 0.0 };
     let code = there.offer.code;
-    there.offer.guesses = GUESSES_MAX;
-    assert!(!there.pairs(&stranger, code, place(1, 1)), "the right code came too late");
-    assert_ne!(there.offer.code, code);
-    assert_eq!(there.offer.guesses, 1);
+    there.offer.guesses = GUESSES_MAX - 1;
+    assert!(there.pairs(&console, code, place(1, 1)), "the last guess may be the right one");
+    assert_eq!(there.offer.guesses, GUESSES_MAX);
+    let from = place(1, 2);
+    let (_, cookie, _) = there.sends(2, HELLO, &content(&[]), from).unwrap();
+    let mut here = Console::new(code, console.public());
+    assert!(matches!(here.take(COOKIE, &cookie), Step::Continues));
+    let (step, asked) = here.question();
+    let report = there.offer.take((2, step, &asked), from, there.t_s).err().unwrap().to_string();
+    assert!(report.contains("1000 wrong codes") && report.contains("firewall"), "{report}");
+    assert_eq!(there.offer.code, code);
+}
+
+#[test]
+fn many_addresses_at_once_do_not_keep_the_console_out() {
+    let [follower, console, stranger] = [(); 3].map(|()| NetworkKeys::random().unwrap());
+    let mut there = Stranger { offer: Offer::new(&follower).unwrap(), t_s: 0.0 };
+    let code = there.offer.code;
+    for number in 1..=16 {
+        there.pairs(&stranger, other(code), place(number, 1));
+    }
+    assert_eq!(there.offer.guesses, 16, "the maximum burst");
+    let from = place(100, 5);
+    for _ in 0..10 {
+        assert!(!there.pairs(&console, code, from), "no exchange may begin now");
+    }
+    there.t_s = 0.15;
+    assert!(there.pairs(&console, code, from), "the refusals must not count for the console's address");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::{
 
 use anyhow::Context as _;
 use clap::Args;
-use nima_network::pairing::{Attempts, Code, Pairing};
+use nima_network::pairing::{Attempts, Code, Pairing, WAIT_MAX, WAIT_USUAL};
 use nima_report::output;
 
 use super::network;
@@ -29,9 +29,18 @@ pub(super) struct PairArguments {
     /// With --offer: name under which this machine lists the console
     #[arg(long, value_name = "NAME", requires = "offer", default_value = "console")]
     name: String,
-    /// Seconds to wait for the other machine
-    #[arg(long, value_name = "S", value_parser = positive_seconds, default_value = "120")]
+    /// Seconds to wait for the other machine, at most 600
+    #[arg(long, value_name = "S", value_parser = wait_seconds, allow_negative_numbers = true, default_value_t = WAIT_USUAL.as_secs_f64())]
     wait: f64,
+}
+
+/// Returns a number of seconds above zero, up to the maximum wait.
+fn wait_seconds(text: &str) -> Result<f64, String> {
+    let max_s = WAIT_MAX.as_secs_f64();
+    if text.parse::<f64>().is_ok_and(|seconds| seconds > max_s) {
+        return Err(format!("enter at most {max_s} seconds; if they are not enough, pair again"));
+    }
+    positive_seconds(text)
 }
 
 pub(super) fn run(arguments: &PairArguments) -> anyhow::Result<()> {

@@ -189,6 +189,7 @@ impl Follower for ExternalArm {
     }
 
     fn attach(&self, lever: &Lever) {
+        // Only a flag for a loop that resumes, as for a handle: while the loop hangs, the arm's own watchdog acts.
         let pulled = Arc::clone(&self.pulled);
         lever.attach(move || pulled.store(true, Ordering::Release));
     }

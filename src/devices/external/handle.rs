@@ -27,7 +27,7 @@ const UNIT_WITHIN: f64 = 0.01;
 
 pub struct ExternalHandle {
     line: ExternalLine,
-    /// Whether force is requested; the emergency release clears it from another thread.
+    /// Whether force is requested; the emergency release clears it from another thread, for a loop that resumes.
     wanted: Arc<AtomicBool>,
     /// Force state that the device has reported and the loop has not read yet.
     reported: Option<bool>,
@@ -140,6 +140,8 @@ impl Leader for ExternalHandle {
     }
 
     fn attach(&self, lever: &Lever) {
+        // Only a flag for a loop that resumes. While the loop hangs, a command sent from here would be refused, because
+        // the reading that it acknowledges is old: the device's own watchdog ends the force.
         let wanted = Arc::clone(&self.wanted);
         lever.attach(move || wanted.store(false, Ordering::Release));
     }

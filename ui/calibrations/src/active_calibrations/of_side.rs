@@ -224,19 +224,21 @@ impl SideCalibrations {
 
     /// Saves a record and activates it; returns its path.
     pub(super) fn save(&mut self, store: &Store, saving: SaveRequest) -> Result<PathBuf, String> {
-        let path = match saving {
-            SaveRequest::Gravity(record) => kept(store, *record, &mut self.gravity)?,
-            SaveRequest::Correspondence(record) => kept(store, *record, &mut self.correspondence)?,
+        let (saved, path) = match saving {
+            SaveRequest::Gravity(record) => (WizardKind::Gravity, kept(store, *record, &mut self.gravity)?),
+            SaveRequest::Correspondence(record) => {
+                (WizardKind::Correspondence, kept(store, *record, &mut self.correspondence)?)
+            }
             SaveRequest::TipForce(model) => {
                 let path = keep_model(&model, store).map_err(|error| chain(&error))?;
                 self.tip_force = Some(LoadedRecord { record: *model, age: CalibrationAge::Fresh, path: path.clone() });
-                path
+                (WizardKind::TipForce, path)
             }
             SaveRequest::Frame(_) | SaveRequest::Camera(_) | SaveRequest::Undo(_) => {
                 return Err(text::calibrations::NOT_OF_A_SENSOR.get().to_owned());
             }
         };
-        self.unusable.clear();
+        self.unusable.retain(|(what, _)| *what != saved);
         Ok(path)
     }
 

@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_core::calibration::{RecordHead, gravity::GravityRecord};
+use nima_core::calibration::{RecordHead, correspondence::CorrespondenceRecord, gravity::GravityRecord};
 use nima_devices::{DeviceSlot, ForceReading, Lever, bota};
 use nima_emulation::emulators::{EmulatorThread, bota as emulated};
 use nima_machine::{
@@ -113,6 +113,25 @@ fn a_calibration_that_was_copied_to_the_other_side_is_not_in_force_and_is_told()
     assert_eq!(has_gravity(&mut active, &rig), [true, false]);
     let report = active.report();
     assert!(report.len() == 1 && report[0].contains("not used") && report[0].contains("R-1"), "{report:?}");
+}
+
+#[test]
+fn a_damaged_file_is_reported_until_its_own_calibration_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("palpation").unwrap();
+    let wrist = rig.simulated_wrist(Side::Right).unwrap();
+    let store = Store::open(folder.path());
+    std::fs::write(store.path::<GravityRecord>(&wrist.serial_number).unwrap(), "kind of a note").unwrap();
+    std::fs::write(store.path::<CorrespondenceRecord>(&wrist.serial_number).unwrap(), b"\xff\0\x80").unwrap();
+    let mut active = ActiveCalibrations::load(Some(folder.path()), &rig, &scene);
+    let reported = |active: &ActiveCalibrations| {
+        let report = active.report().join("\n");
+        ["gravity", "correspondence"].map(|kind| report.contains(&format!("{kind}-{}.toml", wrist.serial_number)))
+    };
+    assert_eq!(reported(&active), [true, true], "{:?}", active.report());
+    active.save(SaveRequest::Gravity(Box::new(record(&wrist.serial_number, &wrist.tool)))).unwrap();
+    assert_eq!(reported(&active), [false, true], "{:?}", active.report());
 }
 
 #[test]

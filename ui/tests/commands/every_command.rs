@@ -324,6 +324,10 @@ fn unusable_arguments_exit_non_zero() {
     for arguments in [&["fly"][..], &["run", "--seconds", "-1"], &["run", "--mode", "magic"], &["identify"]] {
         refused(arguments, &["--help"]);
     }
+    for (seconds, words) in [("1e9", "at most 10000000 seconds"), ("-1", "seconds above 0"), ("nan", "seconds above 0")]
+    {
+        refused(&["run", "--seconds", seconds], &["--seconds", words]);
+    }
     refused(&["emulate", "rig", "--set", "kinova.joints=6"], &["--set applies only to single devices"]);
     assert!(nima(&["identify", "--help"]).status.success());
 }

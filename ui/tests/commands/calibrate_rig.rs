@@ -67,13 +67,15 @@ fn record(sensor: &str, tool: &str) -> GravityRecord {
     GravityRecord { head: RecordHead::new(sensor, tool, &made.head.date), ..made }
 }
 
-/// The rig runs idle, and one line reports the missing calibrations and the command for them.
+/// The rig runs idle, one line reports the missing calibrations and the command for them, and the command fails.
 #[test]
 fn without_calibrations_the_devices_run_and_one_line_says_what_is_missing() {
     let _alone = alone();
     let home = Home::new(&rig());
     judged(|| {
-        let (figures, report) = home.run("5");
+        let output = home.nima(&["run", "--rig", "rig.toml", "--seconds", "5", "--json"]);
+        let figures: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        let report = String::from_utf8_lossy(&output.stderr).into_owned();
         let lines: Vec<_> = report.lines().filter(|line| line.contains("not calibrated")).collect();
         assert!(!lines.is_empty() && figures["ticks"].as_u64().unwrap_or(0) >= 1000, "{report}");
         println!("{report}");
@@ -83,6 +85,8 @@ fn without_calibrations_the_devices_run_and_one_line_says_what_is_missing() {
             assert!(all.contains(words), "{words}: {report}");
         }
         assert_eq!(figures["final_state"], "idle", "{report}");
+        let is_reason = |line: &str| line.contains("no arm was engaged: ") && line.contains("no gravity calibration");
+        assert!(!output.status.success() && report.lines().any(is_reason), "{report}");
     });
 }
 

@@ -8,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use nima_recording::session::{SessionReader, SessionWriter};
+use nima_recording::session::{ChannelId, SessionReader, SessionWriter};
 use serde_json::Value;
 
 use crate::{
@@ -113,8 +113,8 @@ fn a_run_of_a_training_scene_is_scored_and_its_seed_can_be_given() {
     assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("--seed"));
 }
 
-/// Copies a session with a further message, dated 30 years after its end.
-fn with_a_late_message(from: &str, to: &str) {
+/// Copies the messages of a session; returns the new one, and the last message of the right arm's forces.
+fn copied(from: &str, to: &str) -> (SessionWriter, (ChannelId, u64, Vec<u8>)) {
     let reader = SessionReader::open(Path::new(from)).unwrap();
     let mut writer = SessionWriter::create(Path::new(to), reader.library()).unwrap();
     let mut channels = BTreeMap::new();
@@ -130,7 +130,12 @@ fn with_a_late_message(from: &str, to: &str) {
             last = Some((channel, message.log_time_ns(), message.data().to_vec()));
         }
     }
-    let (channel, time_ns, data) = last.unwrap();
+    (writer, last.unwrap())
+}
+
+/// Copies a session with a further message, dated 30 years after its end.
+fn with_a_late_message(from: &str, to: &str) {
+    let (mut writer, (channel, time_ns, data)) = copied(from, to);
     writer.message(channel, time_ns + 1_000_000_000_000_000_000, &data).unwrap();
     writer.flush().unwrap();
 }
@@ -191,4 +196,26 @@ fn a_session_that_is_not_whole_is_reported_and_marked_in_the_table() {
     let report = nima(&["score", &at("damaged.mcap")]);
     let told = String::from_utf8_lossy(&report.stderr).into_owned();
     assert!(told.contains("damaged.mcap: ") && told.contains("chunk"), "{told}");
+}
+
+#[test]
+fn metadata_of_another_program_never_reach_the_terminal_as_control_characters() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    record(&at("whole.mcap"), "bimanual", "4");
+    let [foreign, table] = ["foreign.mcap", "foreign.csv"].map(at);
+    let (mut writer, _) = copied(&at("whole.mcap"), &foreign);
+    let entries = [("mode", "\u{1b}[31mred\r\n\u{202e}\u{7}"), ("delay_s", "\u{1b}]0;title\u{7}")];
+    let entries = entries.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    writer.metadata("session", &BTreeMap::from(entries)).unwrap();
+    writer.finish().unwrap();
+    let more: [&[&str]; 2] = [&["--out", &table], &["--json"]];
+    for more in more {
+        let output = nima(&[&["score", foreign.as_str()][..], more].concat());
+        let text = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(output.status.success() && text.contains("u{1b}[31mred"), "{text:?}");
+        assert!(!text.contains(|c: char| (c.is_control() && c != '\n') || c == '\u{202e}'), "{text:?}");
+    }
+    let table = std::fs::read_to_string(&table).unwrap();
+    assert!(table.lines().count() == 2 && !table.contains(|c: char| c.is_control() && c != '\n'), "{table:?}");
 }

@@ -125,15 +125,22 @@ mod tests {
 
     use super::*;
 
-    /// `OpenIGTLink` would show the rendered forces, and thereby the condition.
+    /// Each of them would show the rendered forces, and thereby the condition. The test of the department's server is in
+    /// its own program.
     #[test]
-    fn a_trial_of_a_blind_study_is_not_shown_by_openigtlink() {
-        let servers = Servers(vec![Show::Igtl.start("127.0.0.1:0".parse().unwrap()).unwrap()]);
+    fn a_trial_of_a_blind_study_is_shown_neither_live_nor_by_openigtlink() {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("rings").unwrap();
         let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
-        assert!(servers.blind_audiences(&plan, "P03 4").is_empty());
-        assert_eq!(servers.audiences(&plan, &FrameQueue::default()).len(), 1);
-        assert!(servers.shown()[0].at.starts_with("igtl://127.0.0.1:"));
+        let mut shown = vec![(Show::Igtl, "igtl://127.0.0.1:")];
+        if cfg!(feature = "live") {
+            shown.push((Show::Live, "ws://127.0.0.1:"));
+        }
+        for (show, at) in shown {
+            let servers = Servers(vec![show.start("127.0.0.1:0".parse().unwrap()).unwrap()]);
+            assert!(servers.blind_audiences(&plan, "P03 4").is_empty(), "{show:?}");
+            assert_eq!(servers.audiences(&plan, &FrameQueue::default()).len(), 1);
+            assert!(servers.shown()[0].at.starts_with(at), "{:?}", servers.shown());
+        }
     }
 }

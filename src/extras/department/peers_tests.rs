@@ -12,6 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use nima_console::watching::WatchServer as _;
 use nima_machine::{
     config::RigConfig,
     messages::Tick,
@@ -98,6 +99,16 @@ impl Running {
         self.recorder.take().unwrap().finish().unwrap();
         summary
     }
+}
+
+#[test]
+fn a_trial_of_a_blind_study_is_not_published() {
+    let rig = RigConfig::load("simulated").unwrap();
+    let scene = Scene::load("peg_transfer").unwrap();
+    let plan = SimulationPlan { rig, scene, calibrations: Default::default(), engage: false };
+    let department = Department::new("lab");
+    let share = department.share();
+    assert!(share.blind_audience(&plan, "P03 4").is_none());
 }
 
 fn wait(what: &str, mut until: impl FnMut() -> bool) {

@@ -21,13 +21,14 @@ const TIME: &str = "t_s";
 #[derive(Debug)]
 pub(super) struct MarkFollower {
     contact_n: f64,
-    words: fn(Fault) -> &'static str,
+    /// Text of a fault's cause; `None` in a trial, where some causes occur only with force.
+    words: Option<fn(Fault) -> &'static str>,
     states: [Option<LoopState>; SIDES],
     contacts: [bool; SIDES],
 }
 
 impl MarkFollower {
-    pub(super) const fn new(contact_n: f64, words: fn(Fault) -> &'static str) -> Self {
+    pub(super) const fn new(contact_n: f64, words: Option<fn(Fault) -> &'static str>) -> Self {
         Self { contact_n, words, states: [None; SIDES], contacts: [false; SIDES] }
     }
 
@@ -60,8 +61,9 @@ impl MarkFollower {
             (true, false) => mark(format!("disengage {side}")),
             _ => {}
         }
+        let cause = |fault| self.words.map_or_else(String::new, |words| format!(": {}", words(fault)));
         match (before, to) {
-            (_, InterlockState::Faulted(fault)) => mark(format!("fault {side}: {}", (self.words)(fault))),
+            (_, InterlockState::Faulted(fault)) => mark(format!("fault {side}{}", cause(fault))),
             (_, InterlockState::Stopped) => mark(format!("stop {side}")),
             (_, InterlockState::Clutched) => mark(format!("clutch on {side}")),
             (Some(InterlockState::Clutched), _) => mark(format!("clutch off {side}")),

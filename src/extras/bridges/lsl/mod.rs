@@ -1,7 +1,7 @@
 //! Markers for recordings of other instruments, over the Lab Streaming Layer (LSL): events with LSL time stamps.
 //!
-//! The library is loaded at run time, only when requested. Markers contain events, never the mode, gain or delay, so
-//! that they can be used in a blind study.
+//! The library is loaded at run time, only when requested. Markers contain events, never the mode, gain or delay,
+//! and in a trial not the cause of a fault, so that they can be used in a blind study.
 
 mod audience;
 mod clock;
@@ -71,8 +71,9 @@ pub struct MarkContext {
     /// Text of the markers at the start and the end of the trial: `trial P03 4`; `None` for a session that is not a
     /// trial.
     pub trial: Option<String>,
-    /// Returns a sentence for a fault.
-    pub words: fn(nima_machine::messages::Fault) -> &'static str,
+    /// Returns the cause of a fault as a sentence. `None` in a trial: some causes occur only with force, so they would
+    /// reveal the condition.
+    pub words: Option<fn(nima_machine::messages::Fault) -> &'static str>,
 }
 
 /// A stream of markers, until it is dropped.

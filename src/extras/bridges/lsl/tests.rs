@@ -46,7 +46,7 @@ fn at(number: u32, like: &Tick) -> Tick {
 
 #[test]
 fn a_session_gives_each_mark_once_at_its_tick() {
-    let mut follower = MarkFollower::new(CONTACT_N, WORDS);
+    let mut follower = MarkFollower::new(CONTACT_N, Some(WORDS));
     let mut marks = Vec::new();
     for (tick, shown) in ticks().iter().enumerate() {
         follower.tick(shown, |what| marks.push((tick, what)));
@@ -61,7 +61,7 @@ fn a_session_gives_each_mark_once_at_its_tick() {
 fn marks_tell_no_condition() {
     // The same session with every number of the rendering changed gives the same markers.
     let report = |change: &dyn Fn(&mut Tick)| {
-        let mut follower = MarkFollower::new(CONTACT_N, WORDS);
+        let mut follower = MarkFollower::new(CONTACT_N, Some(WORDS));
         let mut marks = Vec::new();
         for (tick, shown) in ticks().iter_mut().enumerate() {
             shown.iter_mut().flatten().for_each(change);
@@ -83,7 +83,7 @@ fn marks_tell_no_condition() {
 
 #[test]
 fn a_force_that_is_not_known_is_no_contact() {
-    let mut follower = MarkFollower::new(CONTACT_N, WORDS);
+    let mut follower = MarkFollower::new(CONTACT_N, Some(WORDS));
     let mut shown = ticks().swap_remove(1300);
     shown[0].as_mut().unwrap().measured_n = Vector3::repeat(f64::NAN);
     let mut marks = Vec::new();
@@ -93,6 +93,18 @@ fn a_force_that_is_not_known_is_no_contact() {
     tick.state = InterlockState::Faulted(Fault::LinkSilent);
     follower.tick(&[Some(tick), None], |what| marks.push(what));
     assert_eq!(marks[1..], ["disengage right", "fault right: something is wrong"]);
+}
+
+#[test]
+fn a_fault_in_a_blind_trial_is_marked_without_its_cause() {
+    let mut tick = ticks().swap_remove(1300)[0].unwrap();
+    for fault in [Fault::LinkSilent, Fault::SamplesLost, Fault::ClockJumped, Fault::DrivesOff] {
+        let mut follower = MarkFollower::new(CONTACT_N, None);
+        tick.state = InterlockState::Faulted(fault);
+        let mut marks = Vec::new();
+        follower.tick(&[Some(tick), None], |what| marks.push(what));
+        assert_eq!(marks, ["fault right"], "{fault:?}");
+    }
 }
 
 #[test]

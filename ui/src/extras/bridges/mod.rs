@@ -55,6 +55,12 @@ impl WatchServer for igtl::IgtlServer {
         self.audience(outline(plan))
     }
 
+    /// Shows nothing: the rendered forces would reveal the condition. The images of the previous session end too.
+    fn blind_audience(&self, _plan: &SimulationPlan, _trial: &str) -> Option<Box<dyn Audience>> {
+        self.show(None);
+        None
+    }
+
     fn shows_images(&self) -> bool {
         true
     }
@@ -99,7 +105,9 @@ impl WatchServer for MarkStream {
 fn marked(plan: &SimulationPlan, trial: Option<String>) -> lsl::MarkContext {
     let contact_n =
         plan.scene.task.as_ref().and_then(|task| TaskFile::of(task).ok()).map_or(CONTACT_N, |task| task.contact_n);
-    lsl::MarkContext { contact_n, trial, words: Fault::cause }
+    let cause: fn(Fault) -> &'static str = Fault::cause;
+    let words = trial.is_none().then_some(cause);
+    lsl::MarkContext { contact_n, trial, words }
 }
 
 fn marks_by(library: &Path) -> anyhow::Result<Box<dyn WatchServer>> {
@@ -122,10 +130,53 @@ fn machine() -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    };
+
     use nima_machine::config::RigConfig;
     use nima_simulation::scene::Scene;
 
     use super::*;
+
+    /// A source of images that reports its removal.
+    #[derive(Debug)]
+    struct RemovableSource(Arc<AtomicBool>);
+
+    impl ImageProvider for RemovableSource {
+        fn newest(&mut self, _is_wanted: bool) -> Option<(Image, Duration)> {
+            None
+        }
+    }
+
+    impl Drop for RemovableSource {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn plan_of(scene: &str) -> SimulationPlan {
+        let rig = RigConfig::load("simulated").unwrap();
+        let scene = Scene::load(scene).unwrap();
+        SimulationPlan { rig, scene, calibrations: Default::default(), engage: false }
+    }
+
+    #[test]
+    fn openigtlink_shows_neither_data_nor_images_of_a_blind_trial() {
+        let server = igtl::IgtlServer::start("127.0.0.1:0".parse().unwrap(), trouble_of).unwrap();
+        let is_removed = Arc::new(AtomicBool::new(false));
+        server.show(Some(Box::new(RemovableSource(Arc::clone(&is_removed)))));
+        assert!(WatchServer::blind_audience(&server, &plan_of("rings"), "P03 4").is_none());
+        assert!(is_removed.load(Ordering::Relaxed));
+    }
+
+    #[test]
+    fn marks_of_a_trial_have_no_cause_of_a_fault() {
+        let plan = plan_of("rings");
+        assert!(marked(&plan, Some("P03 4".to_owned())).words.is_none());
+        assert!(marked(&plan, None).words.is_some());
+    }
 
     #[test]
     fn the_shaft_of_each_arm_goes_through_the_trocar_that_the_screen_shows() {

@@ -243,6 +243,21 @@ fn the_result_of_a_trial_is_told_as_the_study_has_it() {
 }
 
 #[test]
+fn a_recording_that_cannot_be_sealed_is_reported_and_the_study_opens() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("study");
+    let study = place.to_str().unwrap();
+    report(&["user-study", "new", &file(folder.path(), "participants = 2\ntrials = 1", 3.0, BLIND), "--out", study]);
+    fs::create_dir_all(place.join("sessions/P01-trial-01-1.mcap.sealed")).unwrap();
+    fs::write(place.join("sessions/P01-trial-01-1.mcap"), "left by a power cut").unwrap();
+    let text = report(&["user-study", "note", study, "--text", "the light flickered"]);
+    assert!(text.contains("warning: cannot encrypt a recording") && text.lines().count() == 1, "{text}");
+    fs::remove_dir(place.join("sessions/P01-trial-01-1.mcap.sealed")).unwrap();
+    assert_eq!(report(&["user-study", "note", study, "--text", "it is over"]), "");
+    assert!(!place.join("sessions/P01-trial-01-1.mcap").exists());
+}
+
+#[test]
 fn bad_studies_and_steps_are_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("study");

@@ -73,10 +73,11 @@ impl UserStudy {
         self.secret.practice().or_else(|| self.secret.condition(*who.order.get(turn)?))
     }
 
-    /// Ends a trial with a result.
+    /// Ends a trial with a result. A recording that cannot be encrypted does not lose the result; see
+    /// [`UserStudy::take_trouble`].
     ///
     /// # Errors
-    /// I/O errors.
+    /// I/O errors of the journal.
     pub fn end_trial(
         &mut self,
         running: RunningTrial,
@@ -88,17 +89,20 @@ impl UserStudy {
         let (telling, report): (TrialMeasures, TrialMeasures) =
             measures(score).into_iter().partition(|(key, _)| !is_reported && unblinding_risk::tells(key));
         let withheld = self.withheld(MEASURES, &running.participant, running.trial, &telling)?;
-        let session = running.session.as_deref().filter(|path| path.is_file());
-        let session = session.map(|path| self.put_away(path)).transpose()?;
-        let RunningTrial { participant, trial, .. } = running;
-        self.write(at, StudyEvent::TrialEnded { participant, trial, ending, measures: report, withheld, session })
+        let RunningTrial { participant, trial, session, .. } = running;
+        let recording = session.filter(|path| path.is_file());
+        let session = recording.as_deref().map(|path| self.name_after_trial(path));
+        let ended = StudyEvent::TrialEnded { participant, trial, ending, measures: report, withheld, session };
+        let written = self.write(at, ended);
+        self.seal_recording(recording.as_deref());
+        written
     }
 
     /// Gives up a trial; the rule of the study determines the next step. `details` may reveal the condition: in a blind
     /// study they are encrypted, otherwise they are a part of the reason.
     ///
     /// # Errors
-    /// I/O errors.
+    /// I/O errors of the journal.
     pub fn abort_trial(
         &mut self,
         running: RunningTrial,
@@ -106,14 +110,13 @@ impl UserStudy {
         details: Option<&str>,
         at: &str,
     ) -> Result<(), StudyError> {
-        if let Some(path) = running.session.as_deref().filter(|path| path.is_file()) {
-            self.put_away(path)?;
-        }
-        let RunningTrial { participant, trial, .. } = running;
+        let RunningTrial { participant, trial, session, .. } = running;
         let withheld = self.withheld(REASON, &participant, trial, &details.unwrap_or_default())?;
         let shown = details.filter(|_| withheld.is_none());
         let why = shown.map_or_else(|| why.to_owned(), |details| format!("{why}: {details}"));
-        self.write(at, StudyEvent::TrialAborted { participant, trial, why, withheld })
+        let written = self.write(at, StudyEvent::TrialAborted { participant, trial, why, withheld });
+        self.seal_recording(session.as_deref().filter(|path| path.is_file()));
+        written
     }
 
     /// Encrypts a value for its trial; `None` if the conditions may be shown. There is always a text, of always the same

@@ -54,6 +54,8 @@ pub struct UserStudy {
     /// The hash of the journal, as it was read.
     chain: Chain,
     state: StudyState,
+    /// Reason why a recording is not encrypted or decrypted yet.
+    trouble: Option<String>,
 }
 
 impl fmt::Debug for UserStudy {
@@ -69,7 +71,7 @@ impl fmt::Debug for UserStudy {
 
 impl UserStudy {
     /// Opens the study exclusively for writing. A trial that had begun and has not ended was interrupted, which is
-    /// recorded.
+    /// recorded. Recordings that cannot be encrypted or decrypted do not prevent it; see [`UserStudy::take_trouble`].
     ///
     /// # Errors
     /// There is no study, another program has it open, or a file was changed or damaged.
@@ -84,7 +86,8 @@ impl UserStudy {
         for (participant, trial) in interrupted {
             study.write(at, StudyEvent::TrialInterrupted { participant, trial })?;
         }
-        study.tidy()?;
+        let tidied = study.tidy();
+        study.keep_trouble(tidied);
         Ok(study)
     }
 
@@ -137,7 +140,9 @@ impl UserStudy {
         }
         let state = StudyState::new(&plan);
         let chain = Chain::NONE;
-        Ok(Self { folder: folder.to_owned(), plan, scene, key, secret_text, secret, journal: None, chain, state })
+        let folder = folder.to_owned();
+        let trouble = None;
+        Ok(Self { folder, plan, scene, key, secret_text, secret, journal: None, chain, state, trouble })
     }
 
     fn follow(&mut self, path: &Path, entries: &[crate::JournalEntry]) -> Result<(), StudyError> {
@@ -172,6 +177,12 @@ impl UserStudy {
     /// Returns the hash of the whole journal; `None` in a study of an older version.
     pub fn journal_hash(&self) -> Option<&str> {
         self.journal.as_ref().map_or(&self.chain, StudyJournal::chain).hash()
+    }
+
+    /// Returns and clears the reason why a recording is still readable in a blind study, or still encrypted after the
+    /// unblinding. The results in the journal do not depend on it.
+    pub fn take_trouble(&mut self) -> Option<String> {
+        self.trouble.take()
     }
 
     pub fn folder(&self) -> &Path {

@@ -26,25 +26,45 @@ impl UserStudy {
         Ok(folder.join(format!("{participant}-{phase}-{:02}-{}.mcap", trial.number, trial.attempt)))
     }
 
-    /// Encrypts a recording if it must be hidden; returns its name in the folder.
-    pub(super) fn put_away(&self, plain: &Path) -> Result<String, StudyError> {
-        let kept = if self.state.is_open(&self.plan) {
-            plain.to_owned()
-        } else {
-            let sealed = with_end(plain);
-            let length = fs::metadata(plain).map_err(StudyError::io(plain))?.len();
-            let size = self.sealed_size(length);
-            self.pass(plain, &sealed, |from, to| {
-                // Forces compress worse than zeros, so the length would reveal the condition.
-                let padding = io::repeat(0).take(size.saturating_sub(length));
-                let head = length.to_le_bytes();
-                let padded = head.as_slice().chain(from).chain(padding);
-                self.key.seal_stream(&self.purpose_of_session(plain), padded, to)
-            })?;
-            sealed
-        };
+    /// Returns the name that a recording has in the folder after its trial.
+    pub(super) fn name_after_trial(&self, plain: &Path) -> String {
+        let kept = if self.state.is_open(&self.plan) { plain.to_owned() } else { with_end(plain) };
         let name = kept.file_name().unwrap_or_default().to_string_lossy();
-        Ok(format!("{SESSIONS}/{name}"))
+        format!("{SESSIONS}/{name}")
+    }
+
+    /// Encrypts the recording of a trial whose end is in the journal. A failure loses nothing: the recording is encrypted
+    /// when the study is opened again.
+    pub(super) fn seal_recording(&mut self, plain: Option<&Path>) {
+        let sealed = plain.map_or(Ok(()), |plain| self.put_away(plain));
+        self.keep_trouble(sealed);
+    }
+
+    /// Keeps an error of the recordings for [`UserStudy::take_trouble`].
+    pub(super) fn keep_trouble(&mut self, done: Result<(), StudyError>) {
+        let action = if self.state.is_open(&self.plan) { "decrypt" } else { "encrypt" };
+        if let Err(error) = done {
+            self.trouble = Some(format!(
+                "cannot {action} a recording: {error}; if the disk is full, free space, then open the study again"
+            ));
+        }
+    }
+
+    /// Encrypts a recording if it must be hidden.
+    fn put_away(&self, plain: &Path) -> Result<(), StudyError> {
+        if self.state.is_open(&self.plan) {
+            return Ok(());
+        }
+        let sealed = with_end(plain);
+        let length = fs::metadata(plain).map_err(StudyError::io(plain))?.len();
+        let size = self.sealed_size(length);
+        self.pass(plain, &sealed, |from, to| {
+            // Forces compress worse than zeros, so the length would reveal the condition.
+            let padding = io::repeat(0).take(size.saturating_sub(length));
+            let head = length.to_le_bytes();
+            let padded = head.as_slice().chain(from).chain(padding);
+            self.key.seal_stream(&self.purpose_of_session(plain), padded, to)
+        })
     }
 
     /// Returns the length to which sessions are padded: a power of two, the same for all sessions from the first one that
@@ -86,25 +106,30 @@ impl UserStudy {
     }
 
     /// Makes the folder match the journal: recordings left by an interrupted program are encrypted, and after the
-    /// unblinding all are decrypted and the assignment is readable.
+    /// unblinding all are decrypted and the assignment is readable. A file that fails does not prevent the others; the
+    /// first error is returned.
     pub(super) fn tidy(&self) -> Result<(), StudyError> {
+        let mut done = Ok(());
         let is_open = self.state.is_open(&self.plan);
         let opened = self.folder.join(OPENED);
         if is_open && !opened.exists() {
             let written = nima_files::write_atomically(&opened, |file| file.write_all(self.secret_text.as_bytes()));
-            written.map_err(StudyError::io(opened))?;
+            done = written.map_err(StudyError::io(opened));
         }
-        let Ok(sessions) = fs::read_dir(self.folder.join(SESSIONS)) else { return Ok(()) };
+        let Ok(sessions) = fs::read_dir(self.folder.join(SESSIONS)) else { return done };
         for path in sessions.filter_map(|entry| Some(entry.ok()?.path())) {
             let end = path.extension().unwrap_or_default();
-            if is_open && end == SEALED_END {
+            let passed = if is_open && end == SEALED_END {
                 let plain = path.with_extension("");
-                self.pass(&path, &plain, |from, to| self.open_session(&plain, from, to))?;
+                self.pass(&path, &plain, |from, to| self.open_session(&plain, from, to))
             } else if !is_open && end == "mcap" {
-                self.put_away(&path)?;
-            }
+                self.put_away(&path)
+            } else {
+                Ok(())
+            };
+            done = done.and(passed);
         }
-        Ok(())
+        done
     }
 }
 

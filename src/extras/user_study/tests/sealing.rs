@@ -192,6 +192,44 @@ fn a_recording_that_a_power_cut_left_open_is_sealed_when_the_study_is_opened_aga
     assert_eq!(fs::read_to_string(session).unwrap(), "mode = anchored, delay 137.5");
 }
 
+#[test]
+fn a_recording_that_cannot_be_sealed_costs_neither_a_result_nor_the_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = made(folder.path(), &format!("record = true\n{TWO}"));
+    let mut blocked = Vec::new();
+    for number in 1..=2 {
+        let running = study.begin_trial("P01", true, AT).unwrap();
+        let session = running.session().unwrap().to_owned();
+        fs::write(&session, "mode = anchored, delay 137.5").unwrap();
+        // A file cannot replace a folder: the sealing fails after the recording was read, as on a full disk.
+        let sealed = session.with_extension("mcap.sealed");
+        fs::create_dir(&sealed).unwrap();
+        blocked.push((session, sealed));
+        if number == 1 {
+            study.end_trial(running, TrialEnding::Completed, &score(20), AT).unwrap();
+        } else {
+            study.abort_trial(running, "the sensor came off", None, AT).unwrap();
+        }
+        let trouble = study.take_trouble().unwrap();
+        assert!(trouble.contains("cannot encrypt") && trouble.contains(".mcap.sealed"), "{trouble}");
+    }
+    drop(study);
+    let mut study = again(folder.path());
+    assert!(study.take_trouble().is_some_and(|trouble| trouble.contains("open the study again")));
+    let progress = study.state().progress("P01").unwrap();
+    assert_eq!((study.trials().rows, progress.trials.len(), progress.interruptions), (1, 1, 1));
+    fs::remove_dir(&blocked[0].1).unwrap();
+    drop(study);
+    let mut study = again(folder.path());
+    assert!(study.take_trouble().is_some() && blocked[0].1.is_file(), "one failure does not prevent the other");
+    fs::remove_dir(&blocked[1].1).unwrap();
+    drop(study);
+    let mut study = again(folder.path());
+    assert_eq!(study.take_trouble(), None);
+    assert!(blocked.iter().all(|(session, sealed)| !session.exists() && sealed.is_file()));
+    assert!(found(folder.path()).is_empty(), "{:?}", found(folder.path()));
+}
+
 /// Returns everything about the trials that does not need the key: the lines of the journal without digits, which stand
 /// for times, numbers and hashes, and the lengths of lines and files.
 fn readable(folder: &Path) -> Vec<(String, usize)> {

@@ -231,16 +231,18 @@ pub(super) fn run_virtual(
         (scoring.trial.is_over() || fault.is_some() || leave.is_asked()).then_some(Command::Shutdown)
     };
     runtime::run_virtual(Assembly { tap, ..assembly }, task.time_limit_s + ENGAGES_S, each);
-    recorder.map_or(Ok(()), |mut recorder| {
+    let recorded = recorder.map_or(Ok(()), |mut recorder| {
         recorder.end();
         recorder.finish().map(drop)
-    })?;
+    });
     let why = match (fault, leave.is_asked()) {
         (_, true) => Some(TrialBreak::of(GIVEN_UP)),
         (Some(fault), _) => Some(TrialBreak::by(fault)),
         _ => None,
     };
-    Ok(close(study, running, why, Some(scoring))?)
+    let ran = close(study, running, why, Some(scoring))?;
+    recorded.context("the trial is in the journal, but its recording is incomplete")?;
+    Ok(ran)
 }
 
 impl TrialRun {

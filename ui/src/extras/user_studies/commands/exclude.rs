@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::UserStudy;
+
+use super::opened;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct ExcludeTrialArguments {
@@ -24,5 +25,5 @@ pub(in crate::extras::user_studies) struct ExcludeTrialArguments {
 
 pub(super) fn run(arguments: &ExcludeTrialArguments) -> anyhow::Result<()> {
     let ExcludeTrialArguments { study, participant, trial, reason } = arguments;
-    Ok(UserStudy::open(study, &utc_now())?.exclude(participant, *trial, reason, &utc_now())?)
+    Ok(opened(study)?.exclude(participant, *trial, reason, &utc_now())?)
 }

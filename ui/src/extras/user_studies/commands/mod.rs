@@ -10,7 +10,12 @@ mod status;
 mod table;
 mod unblind;
 
+use std::path::Path;
+
 use clap::Subcommand;
+use nima_recording::store::utc_now;
+use nima_screen::stderr::print_line;
+use nima_user_study::{StudyError, UserStudy};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum UserStudyCommand {
@@ -30,6 +35,20 @@ pub(super) enum UserStudyCommand {
     Table(table::StudyTableArguments),
     /// Let simulated participants do the whole study
     Simulate(simulate::SimulateStudyArguments),
+}
+
+/// Opens a study for writing, with a warning if a recording is not encrypted or decrypted yet.
+fn opened(folder: &Path) -> Result<UserStudy, StudyError> {
+    let mut study = UserStudy::open(folder, &utc_now())?;
+    warn(&mut study);
+    Ok(study)
+}
+
+/// Prints the trouble of a study, if there is one.
+fn warn(study: &mut UserStudy) {
+    if let Some(trouble) = study.take_trouble() {
+        print_line(format_args!("warning: {trouble}"));
+    }
 }
 
 pub(super) fn run(command: &UserStudyCommand) -> anyhow::Result<()> {

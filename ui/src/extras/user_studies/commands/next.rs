@@ -6,9 +6,10 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use nima_recording::store::utc_now;
 use nima_report::output;
-use nima_user_study::{ParticipantProgress, Questionnaire, QuestionnaireAnswers, StudyStep, UserStudy};
+use nima_user_study::{ParticipantProgress, Questionnaire, QuestionnaireAnswers, StudyStep};
 use serde_json::json;
 
+use super::{opened, warn};
 use crate::{
     extras::user_studies::study::{next_text, plain_hand, run_virtual},
     shutdown::Leave,
@@ -38,7 +39,7 @@ pub(in crate::extras::user_studies) struct NextTrialArguments {
 
 pub(super) fn run(arguments: &NextTrialArguments) -> anyhow::Result<()> {
     let NextTrialArguments { study, participant, virtual_clock, answers, answers_file, json } = arguments;
-    let mut study = UserStudy::open(study, &utc_now())?;
+    let mut study = opened(study)?;
     let step = study.next(participant)?;
     let words = match step {
         StudyStep::Done { .. } => bail!("{participant}: no next step ({step})"),
@@ -61,6 +62,7 @@ pub(super) fn run(arguments: &NextTrialArguments) -> anyhow::Result<()> {
             let leave = Leave::on_signals()?;
             let hand = plain_hand(&study, participant)?;
             let ran = run_virtual(&mut study, participant, &hand, &leave)?;
+            warn(&mut study);
             let shows = study.state().progress(participant).is_none_or(ParticipantProgress::shows_result);
             ran.as_text(shows)
         }

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nima_recording::store::utc_now;
-use nima_user_study::UserStudy;
+
+use super::opened;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct NoteArguments {
@@ -21,5 +22,5 @@ pub(in crate::extras::user_studies) struct NoteArguments {
 
 pub(super) fn run(arguments: &NoteArguments) -> anyhow::Result<()> {
     let NoteArguments { study, text, participant } = arguments;
-    Ok(UserStudy::open(study, &utc_now())?.note(participant.as_deref(), text, &utc_now())?)
+    Ok(opened(study)?.note(participant.as_deref(), text, &utc_now())?)
 }

@@ -6,8 +6,9 @@ use anyhow::bail;
 use clap::Args;
 use nima_recording::store::utc_now;
 use nima_report::output;
-use nima_user_study::{StudyStep, UserStudy, simulated::SimulatedParticipant};
+use nima_user_study::{StudyStep, simulated::SimulatedParticipant};
 
+use super::{opened, warn};
 use crate::{
     extras::user_studies::study::{made, run_virtual},
     shutdown::Leave,
@@ -28,7 +29,7 @@ pub(in crate::extras::user_studies) struct SimulateStudyArguments {
 
 pub(super) fn run(arguments: &SimulateStudyArguments) -> anyhow::Result<()> {
     let SimulateStudyArguments { study, seed, steps } = arguments;
-    let mut study = UserStudy::open(study, &utc_now())?;
+    let mut study = opened(study)?;
     let is_real = |(_, one): (&str, &nima_user_study::ParticipantProgress)| {
         one.trials.iter().any(|made| !made.simulated) || one.answers.iter().any(|given| !given.2)
     };
@@ -51,6 +52,7 @@ pub(super) fn run(arguments: &SimulateStudyArguments) -> anyhow::Result<()> {
                 StudyStep::Running { .. } => bail!("{name}: a trial is running"),
                 StudyStep::Practice { attempt, .. } | StudyStep::Trial { attempt, .. } => {
                     run_virtual(&mut study, &name, &person.hand(before, since_break, attempt), &leave)?;
+                    warn(&mut study);
                 }
             }
             if leave.is_asked() {

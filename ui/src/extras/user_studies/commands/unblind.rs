@@ -6,8 +6,9 @@ use clap::Args;
 use nima_recording::store::utc_now;
 use nima_report::output;
 use nima_screen::stderr::print_line;
-use nima_user_study::UserStudy;
 use serde_json::json;
+
+use super::opened;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct UnblindArguments {
@@ -27,7 +28,7 @@ pub(in crate::extras::user_studies) struct UnblindArguments {
 
 pub(super) fn run(arguments: &UnblindArguments) -> anyhow::Result<()> {
     let UnblindArguments { study, name, reason, json } = arguments;
-    let mut study = UserStudy::open(study, &utc_now())?;
+    let mut study = opened(study)?;
     study.unblind(name, reason, &utc_now())?;
     if study.state().unblinding.as_ref().is_some_and(|unblinding| !unblinding.complete) {
         print_line("warning: not all participants have finished; trials from now on are marked as unblinded");

@@ -75,7 +75,8 @@ pub(super) struct OpenStudy {
 }
 
 impl OpenStudy {
-    pub(super) fn new(study: UserStudy, report: Option<String>) -> Self {
+    pub(super) fn new(mut study: UserStudy, report: Option<String>) -> Self {
+        let report = study.take_trouble().or(report);
         let rig = RigConfig::load(&study.plan().rig);
         let hand = rig.as_ref().map_or(HandSource::OfRig, HandSource::of);
         // A participant who is in the middle of a session comes first.
@@ -103,7 +104,8 @@ impl OpenStudy {
         for note in notes {
             self.study.note(Some(&self.chosen), &note, &utc_now()).ok();
         }
-        self.report = Some(words);
+        let all = std::iter::once(words).chain(self.study.take_trouble());
+        self.report = Some(all.collect::<Vec<_>>().join("\n"));
     }
 
     /// Draws the page; `closed` is the reason why no trial can start now.

@@ -281,7 +281,7 @@ impl StudyFile {
             wrong.extend(rule.mistakes().into_iter().map(of));
             if self.blind && unblinding_risk::tells(&rule.measure) {
                 wrong.push(of(format!(
-                    "{} reveals the condition, so a blind study cannot use it as its primary measure",
+                    "{} reveals the condition, so a blind study cannot use it in an exclusion rule",
                     rule.measure
                 )));
             }

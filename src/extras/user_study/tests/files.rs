@@ -36,7 +36,7 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (ending("[[exclusion]]\nmeasure = 'drops'\nis = 'missing'\nexclude = 'trial'\ntimes = 2"), "times"),
         (
             ending("[[exclusion]]\nmeasure = 'peak_rendered_n_right'\nis = 'missing'\nexclude = 'trial'"),
-            "reveals the condition",
+            "reveals the condition, so a blind study cannot use it in an exclusion rule",
         ),
         (ending("[practice]\nunder = 'Gnu'\n[practice.criterion]"), "practice.under"),
         (ending("[practice]\n[practice.criterion]\nmax_trials = 5"), "do not fit"),

@@ -14,6 +14,8 @@ const NO_MEASURES: [&str; 3] = [PARTICIPANT, CONDITION, TRIAL];
 const PARTICIPANT: &str = "participant";
 const CONDITION: &str = "condition";
 const TRIAL: &str = "trial";
+/// Whether the session of a row is complete: `yes` or `no`, as `nima score` writes it.
+const COMPLETE: &str = "complete";
 /// Maximum number of trials and of columns.
 const TRIALS_MAX: usize = 100_000;
 const COLUMNS_MAX: usize = 1000;
@@ -44,7 +46,8 @@ pub struct TrialTable {
 
 impl TrialTable {
     /// Reads a CSV file with the columns `participant`, `condition`, optionally `trial` (a number), and a column per
-    /// measure: the wanted ones, or every other numeric column. Empty cells and `NA` are missing values.
+    /// measure: the wanted ones, or every other numeric column. Empty cells and `NA` are missing values. A row whose column
+    /// `complete` is `no` is refused.
     ///
     /// # Errors
     /// [`TableError`] with cause, position and remedy.
@@ -80,6 +83,9 @@ impl TrialTable {
             if rows.len() > TRIALS_MAX {
                 return Err(format!("there are more than {TRIALS_MAX} trials"));
             }
+        }
+        if let Some(at) = column(COMPLETE) {
+            check_complete(&rows, at)?;
         }
         let is_number = |at: usize| rows.iter().all(|(_, row)| value(&dialect, &row[at]).is_ok());
         let measures: Vec<usize> = if wanted.is_empty() {
@@ -141,6 +147,19 @@ impl TrialTable {
         }
         sums
     }
+}
+
+/// Refuses rows of incomplete sessions: their times and sums are too small.
+fn check_complete(rows: &[(u64, csv::StringRecord)], complete: usize) -> Result<(), String> {
+    let mut incomplete = rows.iter().filter(|(_, row)| row[complete].trim().eq_ignore_ascii_case("no"));
+    let Some((line, _)) = incomplete.next() else { return Ok(()) };
+    let more = match incomplete.count() {
+        0 => String::new(),
+        more => format!(" (and {more} more)"),
+    };
+    Err(format!(
+        "line {line}{more}: column {COMPLETE} is \"no\": data of the session are missing; remove the row, or check it and write yes"
+    ))
 }
 
 /// Refuses two rows with the same participant, condition and trial: one of them would count twice.
@@ -219,6 +238,8 @@ mod tests {
             ("participant,condition,t,t\na,x,1,2\n", &[], "\"t\" occurs twice"),
             ("participant,condition,t\n", &[], "no trials"),
             ("participant,condition,trial,t\na,x,1,1\na,x,2,1\na,x,1,3\n", &[], "line 4 repeats line 2"),
+            ("participant,condition,complete,t\na,x,yes,1\nb,x,no,1\n", &[], "line 3: column complete is \"no\""),
+            ("participant,condition,complete,t\na,x,no,1\nb,x,no,1\n", &["t"], "line 2 (and 1 more)"),
             ("participant;condition,t\na;x,1\n", &[], "by commas or by semicolons"),
             ("participant,condition,t\na,x,1\n", &["u"], "no column \"u\""),
         ] {

@@ -98,6 +98,10 @@ pub enum StudyEvent {
         #[serde(flatten)]
         trial: TrialId,
         why: String,
+        /// Whether the computer stalled briefly: such an attempt does not count. A stall does not depend on the
+        /// condition.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        stalled: bool,
         /// Details that may reveal the condition, encrypted; in every such entry of a blind study.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         withheld: Option<String>,

@@ -57,6 +57,8 @@ pub struct ParticipantProgress {
     pub interruptions: u32,
     /// Finished attempts at the current trial.
     attempts: u32,
+    /// Those of them that do not count.
+    stalls: u32,
     open: Option<(TrialId, bool)>,
     since_break: u32,
 }
@@ -173,6 +175,7 @@ impl ParticipantProgress {
         unblinded: bool,
     ) {
         self.attempts = 0;
+        self.stalls = 0;
         self.since_break += 1;
         if let (Some((_, measures, _)), Some(guidance)) = (&result, &mut self.guidance) {
             let (time_s, drops) = judged(measures);
@@ -199,6 +202,11 @@ impl ParticipantProgress {
         }
     }
 
+    /// Allows another attempt at the current trial instead of one in which the computer stalled.
+    pub(crate) const fn allow_attempt(&mut self) {
+        self.stalls += 1;
+    }
+
     /// The trial is repeated until no attempts are left; by the other rule a trial that counts is over at once.
     pub(crate) fn interrupt(
         &mut self,
@@ -211,7 +219,7 @@ impl ParticipantProgress {
         self.interruptions += 1;
         self.attempts += 1;
         let resumes = plan.interrupted == InterruptionPolicy::Resume && trial.phase == TrialPhase::Trial;
-        if resumes || self.attempts >= plan.attempts {
+        if resumes || self.attempts - self.stalls >= plan.attempts {
             self.end(plan, participant, trial, None, simulated, unblinded);
         }
     }

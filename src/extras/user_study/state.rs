@@ -131,6 +131,9 @@ impl StudyState {
             | StudyEvent::TrialInterrupted { participant, trial } => {
                 let (who, progress) = found(plan, &mut self.participants, participant)?;
                 let simulated = progress.close(*trial, participant)?;
+                if matches!(entry.event, StudyEvent::TrialAborted { stalled: true, .. }) {
+                    progress.allow_attempt();
+                }
                 progress.interrupt(plan, who, *trial, simulated, unblinded);
             }
             StudyEvent::BreakTaken { participant, seconds, .. } => {

@@ -110,11 +110,36 @@ impl UserStudy {
         details: Option<&str>,
         at: &str,
     ) -> Result<(), StudyError> {
+        self.abort(running, (why, details), false, at)
+    }
+
+    /// Gives up a trial because the computer stalled briefly. If the rule of the study repeats interrupted trials, this
+    /// attempt does not count.
+    ///
+    /// # Errors
+    /// I/O errors of the journal.
+    pub fn abort_stalled_trial(
+        &mut self,
+        running: RunningTrial,
+        why: &str,
+        details: Option<&str>,
+        at: &str,
+    ) -> Result<(), StudyError> {
+        self.abort(running, (why, details), true, at)
+    }
+
+    fn abort(
+        &mut self,
+        running: RunningTrial,
+        (why, details): (&str, Option<&str>),
+        stalled: bool,
+        at: &str,
+    ) -> Result<(), StudyError> {
         let RunningTrial { participant, trial, session, .. } = running;
         let withheld = self.withheld(REASON, &participant, trial, &details.unwrap_or_default())?;
         let shown = details.filter(|_| withheld.is_none());
         let why = shown.map_or_else(|| why.to_owned(), |details| format!("{why}: {details}"));
-        let written = self.write(at, StudyEvent::TrialAborted { participant, trial, why, withheld });
+        let written = self.write(at, StudyEvent::TrialAborted { participant, trial, why, stalled, withheld });
         self.seal_recording(session.as_deref().filter(|path| path.is_file()));
         written
     }

@@ -56,6 +56,26 @@ fn an_interrupted_trial_is_repeated_until_its_attempts_are_over() {
 }
 
 #[test]
+fn a_short_stall_of_the_computer_consumes_no_attempt() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = made(folder.path(), &format!("attempts = 2\n{TWO}"));
+    for attempt in 1..=3 {
+        assert_eq!(due(&study, "P01"), (1, attempt));
+        let running = study.begin_trial("P01", true, AT).unwrap();
+        study.abort_stalled_trial(running, "the loop ended in a fault", None, AT).unwrap();
+    }
+    abort(&mut study, "P01");
+    drop(study);
+    let mut study = again(folder.path());
+    assert_eq!(due(&study, "P01"), (1, 5), "one of two attempts has been used");
+    abort(&mut study, "P01");
+    assert_eq!(due(&study, "P01"), (2, 1), "without a result");
+    abort(&mut study, "P01");
+    abort(&mut study, "P01");
+    assert_eq!(due(&study, "P01"), (3, 1), "stalls of an earlier trial give no attempts");
+}
+
+#[test]
 fn by_the_other_rule_the_session_resumes_with_the_next_trial() {
     let folder = tempfile::tempdir().unwrap();
     let mut study = made(folder.path(), &format!("interrupted = 'resume'\n{TWO}"));

@@ -46,15 +46,19 @@ pub(super) struct TrialBreak {
     why: String,
     /// The kind of fault. Some occur only with force, so a blind study hides it.
     details: Option<String>,
+    /// Whether the computer stalled briefly: such an attempt does not count.
+    stalled: bool,
 }
 
 impl TrialBreak {
     pub(super) fn of(why: &str) -> Self {
-        Self { why: why.to_owned(), details: None }
+        Self { why: why.to_owned(), details: None, stalled: false }
     }
 
-    pub(super) fn by(fault: Fault) -> Self {
-        Self { why: FAULT.to_owned(), details: Some(fault.cause().to_owned()) }
+    /// Returns the abort by this fault of a loop with this rate.
+    pub(super) fn by(fault: Fault, rate_hz: f64) -> Self {
+        let details = Some(fault.cause().to_owned());
+        Self { why: FAULT.to_owned(), details, stalled: fault.is_short_stall(rate_hz) }
     }
 }
 
@@ -185,8 +189,13 @@ pub(super) fn close(
             Ok(TrialRun { trial, ending: Some(ending), completion_time_s, why: None })
         }
         (why, _) => {
-            let TrialBreak { why, details } = why.unwrap_or_else(|| TrialBreak::of("the loop was never engaged"));
-            study.abort_trial(running, &why, details.as_deref(), &utc_now())?;
+            let TrialBreak { why, details, stalled } =
+                why.unwrap_or_else(|| TrialBreak::of("the loop was never engaged"));
+            if stalled {
+                study.abort_stalled_trial(running, &why, details.as_deref(), &utc_now())?;
+            } else {
+                study.abort_trial(running, &why, details.as_deref(), &utc_now())?;
+            }
             Ok(TrialRun { trial, ending: None, completion_time_s: None, why: Some(why) })
         }
     }
@@ -237,7 +246,7 @@ pub(super) fn run_virtual(
     });
     let why = match (fault, leave.is_asked()) {
         (_, true) => Some(TrialBreak::of(GIVEN_UP)),
-        (Some(fault), _) => Some(TrialBreak::by(fault)),
+        (Some(fault), _) => Some(TrialBreak::by(fault, plan.rig.rate_hz)),
         _ => None,
     };
     let ran = close(study, running, why, Some(scoring))?;
@@ -264,4 +273,21 @@ impl TrialRun {
 /// Returns the text of the next step within a sentence.
 pub(super) fn next_text(step: &StudyStep) -> String {
     format!("next: {step}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_short_stall_of_the_computer_does_not_count_as_an_attempt() {
+        for (fault, stalled) in [
+            (Fault::LoopStalled { periods: 500 }, true),
+            (Fault::LoopStalled { periods: 1001 }, false),
+            (Fault::SourceSilent, false),
+        ] {
+            assert_eq!(TrialBreak::by(fault, 1000.0).stalled, stalled, "{fault:?}");
+        }
+        assert!(!TrialBreak::of(STOPPED).stalled);
+    }
 }

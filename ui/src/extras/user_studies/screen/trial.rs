@@ -60,6 +60,8 @@ pub(super) struct TrialScreen {
     /// Number of the newest tick of each side, and count of missing ticks.
     newest: [Option<u64>; SIDES],
     lost: u64,
+    /// Rate of the loop, Hz; 0 before it starts.
+    rate_hz: f64,
     /// The next press on the button aborts.
     is_asked: bool,
 }
@@ -86,6 +88,7 @@ impl TrialScreen {
             over: None,
             newest: [None; SIDES],
             lost: 0,
+            rate_hz: 0.0,
             is_asked: false,
         }
     }
@@ -172,6 +175,7 @@ impl PageRun for TrialScreen {
         speed: Option<f64>,
         (reel, audiences): (&FrameQueue, Vec<Box<dyn Audience>>),
     ) -> Result<StartedLoop, String> {
+        self.rate_hz = plan.rig.rate_hz;
         let to = Destination { file: self.running.session(), audiences };
         let is_received = to.file.is_some() || !to.audiences.is_empty();
         let recorded = is_received.then(|| recording::begin(to, plan, None));
@@ -202,7 +206,7 @@ impl PageRun for TrialScreen {
         self.lost += before.map_or(0, |before| tick.index.saturating_sub(before + 1));
         scoring.tick(tick);
         self.over = match tick.state {
-            LoopState::Faulted(fault) => Some(TrialEnd::Broken(TrialBreak::by(fault))),
+            LoopState::Faulted(fault) => Some(TrialEnd::Broken(TrialBreak::by(fault, self.rate_hz))),
             LoopState::Stopped => Some(TrialEnd::Broken(TrialBreak::of(study::STOPPED))),
             _ => scoring.trial.is_over().then_some(TrialEnd::Done),
         };

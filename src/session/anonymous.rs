@@ -22,6 +22,7 @@ use prost::Message as _;
 
 use crate::{
     calibration_metadata::{FIGURES, VERDICTS, verdicts},
+    completeness::{self, MissingLine},
     layouts::layouts,
     logged::LogValue,
     objects, plot_channels,
@@ -86,10 +87,12 @@ pub fn write(
             writer.metadata(&name, &kept(&entries, &VERDICTS.map(|key| (key, verdicts().collect())), &FIGURES))?;
         }
     }
-    writer.metadata(
-        trim::TABLE,
-        &stretch(0, &(times_ns.start.saturating_sub(begin_ns)..since(times_ns.end, begin_ns))),
-    )?;
+    let mut table = stretch(0, &(times_ns.start.saturating_sub(begin_ns)..since(times_ns.end, begin_ns)));
+    let missing = completeness::missing_in_excerpt(reader, times_ns, asked)?;
+    let mut missing: Vec<String> = missing.into_iter().map(MissingLine::anonymous).collect();
+    missing.dedup();
+    trim::note_missing(&mut table, missing);
+    writer.metadata(trim::TABLE, &table)?;
     let forces = Side::ALL.map(|side| format!("{}/forces", side.word()));
     let sides = forces.map(|topic| reader.channels().iter().any(|channel| channel.topic == topic));
     for AttachedFile { name, media_type, data } in known.files.iter().chain(&layouts(sides)) {

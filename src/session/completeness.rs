@@ -1,19 +1,28 @@
 //! The data that a session file lacks: one list for every command that reads a session.
 
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
 use nima_recording::session::{ChannelId, ReaderMessages, SessionMessage, SessionReader};
 
 use crate::{
     journal::{MessageOutline, outline},
     plot_channels::{self, arms, topic},
     recorder::JOURNAL_TOPIC,
-    trim,
+    trim::{self, CutError},
 };
 
 /// A longer time between two ticks is reported, s. The loop has a tick in every period; half a second is more than a
 /// busy computer delays it.
 const GAP_MAX_S: f64 = 0.5;
+/// The same, ns: an excerpt that ends this shortly before the end of a session reaches its end.
+const GAP_MAX_NS: u64 = 500_000_000;
 /// Maximum number of lines; the rest is counted.
 const LINES_MAX: usize = 20;
+/// Replaces the lines of an anonymous excerpt that may contain text of the session.
+const WITHHELD_LINE: &str = "its original session is damaged or lacks data";
 
 /// Returns the faults of a session, one line each; empty for a whole one. Reads the journal and the forces completely.
 ///
@@ -22,6 +31,87 @@ pub fn missing(reader: &SessionReader) -> Vec<String> {
     let mut check = CompletenessCheck::new(reader);
     while check.step() {}
     check.finish()
+}
+
+/// A line about missing data, and the part of the session that lacks them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct MissingLine {
+    text: String,
+    extent: MissingExtent,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MissingExtent {
+    /// Damage of the file, at an unknown time.
+    File,
+    /// A part that cannot be read. An excerpt with this part cannot be saved, so no excerpt lacks it.
+    Unreadable,
+    /// Data that the original session of this excerpt lacks.
+    Original,
+    /// First and last time without data, ns.
+    Times(u64, u64),
+}
+
+impl MissingLine {
+    const fn new(text: String, extent: MissingExtent) -> Self {
+        Self { text, extent }
+    }
+
+    /// Returns whether an excerpt of these times, ns, lacks the data too.
+    const fn concerns(&self, times_ns: &Range<u64>) -> bool {
+        match self.extent {
+            MissingExtent::File | MissingExtent::Original => true,
+            MissingExtent::Unreadable => false,
+            MissingExtent::Times(first_ns, last_ns) => first_ns < times_ns.end && times_ns.start <= last_ns,
+        }
+    }
+
+    /// Returns the line for an excerpt of the session.
+    pub(crate) fn of_excerpt(self) -> String {
+        match self.extent {
+            MissingExtent::File => format!("its original session: {}", self.text),
+            _ => self.text,
+        }
+    }
+
+    /// Returns the line for an anonymous excerpt: only lines that this program has built from numbers are kept.
+    pub(crate) fn anonymous(self) -> String {
+        match self.extent {
+            MissingExtent::Times(..) => self.text,
+            _ => WITHHELD_LINE.to_owned(),
+        }
+    }
+}
+
+/// Returns the lines about data that an excerpt of these times (ns) lacks because its session lacks them. Reads the
+/// journal and the forces completely; setting `asked` stops the reading early.
+///
+/// # Errors
+/// [`CutError::Asked`] once cancellation was requested.
+pub(crate) fn missing_in_excerpt(
+    reader: &SessionReader,
+    times_ns: &Range<u64>,
+    asked: &AtomicBool,
+) -> Result<Vec<MissingLine>, CutError> {
+    let mut check = CompletenessCheck::new(reader);
+    while check.step() {
+        if asked.load(Ordering::Relaxed) {
+            return Err(CutError::Asked);
+        }
+    }
+    let mut lines = check.all_lines();
+    lines.retain(|line| line.concerns(times_ns));
+    Ok(lines)
+}
+
+/// Returns the first lines, and the number of the others in another line.
+pub(crate) fn capped(mut lines: Vec<String>) -> Vec<String> {
+    let rest = lines.len().saturating_sub(LINES_MAX);
+    lines.truncate(LINES_MAX);
+    if rest > 0 {
+        lines.push(format!("{rest} more places are damaged"));
+    }
+    lines
 }
 
 /// Finds missing parts message by message, for callers that have other work in between.
@@ -33,16 +123,22 @@ pub struct CompletenessCheck<'a> {
     is_closed: bool,
     /// Time of the last tick.
     last_ns: Option<u64>,
-    lines: Vec<String>,
+    /// Time of the last message of the journal.
+    block_ns: u64,
+    lines: Vec<MissingLine>,
 }
 
 impl<'a> CompletenessCheck<'a> {
     pub fn new(reader: &'a SessionReader) -> Self {
-        let mut lines = reader.notes().to_vec();
+        let of_file = |text: String| MissingLine::new(text, MissingExtent::File);
+        let mut lines: Vec<MissingLine> = reader.notes().iter().cloned().map(of_file).collect();
         let tables = reader.metadata().unwrap_or_else(|error| {
-            lines.push(error.to_string());
+            lines.push(of_file(error.to_string()));
             Vec::new()
         });
+        let excerpts = || tables.iter().filter(|(name, _)| name == trim::TABLE);
+        let original = excerpts().flat_map(|(_, table)| trim::missing_in_original(table)).take(LINES_MAX + 1);
+        lines.extend(original.map(|text| MissingLine::new(text, MissingExtent::Original)));
         let forces: Vec<String> = arms(reader).into_iter().map(|side| topic(side, "forces")).collect();
         let topics: Vec<&str> = forces.first().map(String::as_str).into_iter().chain([JOURNAL_TOPIC]).collect();
         let journal = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC);
@@ -50,9 +146,10 @@ impl<'a> CompletenessCheck<'a> {
             messages: reader.messages(&topics, 0..u64::MAX),
             begin_ns: plot_channels::beginning_ns(reader).unwrap_or(reader.statistics().times_ns.0),
             journal: journal.map(|channel| channel.id),
-            is_excerpt: tables.iter().any(|(name, _)| name == trim::TABLE),
+            is_excerpt: excerpts().next().is_some(),
             is_closed: false,
             last_ns: None,
+            block_ns: 0,
             lines,
         }
     }
@@ -61,7 +158,7 @@ impl<'a> CompletenessCheck<'a> {
     pub fn step(&mut self) -> bool {
         match self.messages.next() {
             None => return false,
-            Some(Err(error)) => self.lines.push(error.to_string()),
+            Some(Err(error)) => self.add(error.to_string(), MissingExtent::Unreadable),
             Some(Ok(message)) if Some(message.channel()) == self.journal => self.of_journal(&message),
             Some(Ok(message)) => self.tick(message.log_time_ns()),
         }
@@ -69,22 +166,32 @@ impl<'a> CompletenessCheck<'a> {
     }
 
     /// Returns the faults found, one line each.
-    pub fn finish(mut self) -> Vec<String> {
+    pub fn finish(self) -> Vec<String> {
+        capped(self.all_lines().into_iter().map(|line| line.text).collect())
+    }
+
+    fn all_lines(mut self) -> Vec<MissingLine> {
         if self.journal.is_some() && !self.is_closed && !self.is_excerpt {
-            self.lines.push(match self.last_ns {
+            let text = match self.last_ns {
                 Some(last_ns) => format!(
                     "the recording was not closed: it ends at {:.3} s, where the program was killed or the file was cut",
                     self.seconds(last_ns)
                 ),
                 None => "the recording was not closed: the program was killed, or the file was cut".to_owned(),
-            });
+            };
+            let from_ns = self.last_ns.unwrap_or_default().saturating_sub(GAP_MAX_NS);
+            self.add(text, MissingExtent::Times(from_ns, u64::MAX));
         }
-        let rest = self.lines.len().saturating_sub(LINES_MAX);
-        self.lines.truncate(LINES_MAX);
-        if rest > 0 {
-            self.lines.push(format!("{rest} more places are damaged"));
-        }
+        // An excerpt has some of the faults of its original session itself.
+        let is_original = |line: &MissingLine| line.extent == MissingExtent::Original;
+        let original: Vec<String> =
+            self.lines.iter().filter(|line| is_original(line)).map(|line| line.text.clone()).collect();
+        self.lines.retain(|line| is_original(line) || !original.contains(&line.text));
         self.lines
+    }
+
+    fn add(&mut self, text: String, extent: MissingExtent) {
+        self.lines.push(MissingLine::new(text, extent));
     }
 
     fn seconds(&self, time_ns: u64) -> f64 {
@@ -92,14 +199,19 @@ impl<'a> CompletenessCheck<'a> {
     }
 
     fn of_journal(&mut self, message: &SessionMessage) {
-        let t_s = self.seconds(message.log_time_ns());
+        let time_ns = message.log_time_ns();
+        let t_s = self.seconds(time_ns);
+        // The block has the ticks since the previous message.
+        let extent = MissingExtent::Times(std::mem::replace(&mut self.block_ns, time_ns), time_ns);
         match outline(message.data()) {
-            Ok(MessageOutline::Block { lost }) => self
-                .lines
-                .extend(lost.iter().map(|lost| format!("the recording lost {lost} entries before {t_s:.3} s"))),
+            Ok(MessageOutline::Block { lost }) => {
+                for lost in lost {
+                    self.add(format!("the recording lost {lost} entries before {t_s:.3} s"), extent);
+                }
+            }
             Ok(MessageOutline::End(_)) => self.is_closed = true,
             Ok(_) => {}
-            Err(error) => self.lines.push(format!("its journal at {t_s:.3} s: {error}")),
+            Err(error) => self.add(format!("its journal at {t_s:.3} s: {error}"), extent),
         }
     }
 
@@ -107,7 +219,90 @@ impl<'a> CompletenessCheck<'a> {
         let Some(last_ns) = self.last_ns.replace(time_ns) else { return };
         let [from_s, to_s] = [last_ns, time_ns].map(|time_ns| self.seconds(time_ns));
         if to_s - from_s > GAP_MAX_S {
-            self.lines.push(format!("it has no ticks from {from_s:.3} s to {to_s:.3} s"));
+            let extent = MissingExtent::Times(last_ns.saturating_add(1), time_ns.saturating_sub(1));
+            self.add(format!("it has no ticks from {from_s:.3} s to {to_s:.3} s"), extent);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use nima_recording::session::{Encoding, SessionWriter};
+
+    use super::*;
+
+    const BEGIN_NS: u64 = 1_700_000_000_000_000_000;
+
+    const fn at(ms: u64) -> u64 {
+        BEGIN_NS + ms * 1_000_000
+    }
+
+    /// Writes a session whose journal has no end, with a tick every 10 ms from 0 to 8 s, and none from 3 to 5 s.
+    fn not_closed(path: &Path) -> SessionReader {
+        let mut writer = SessionWriter::create(path, "test").unwrap();
+        writer.channel(JOURNAL_TOPIC, Encoding::default()).unwrap();
+        let forces = writer.channel("right/forces", Encoding::default()).unwrap();
+        for ms in (0..=8000).step_by(10).filter(|ms| !(3001..5000).contains(ms)) {
+            writer.message(forces, at(ms), b"").unwrap();
+        }
+        writer.finish().unwrap();
+        SessionReader::open(path).unwrap()
+    }
+
+    fn excerpt(reader: &SessionReader, times_ns: &Range<u64>, path: &Path) -> SessionReader {
+        trim::write(reader, "a session", times_ns, path, &AtomicBool::new(false)).unwrap();
+        SessionReader::open(path).unwrap()
+    }
+
+    #[test]
+    fn an_excerpt_reports_what_its_session_lacks_in_its_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let session = not_closed(&folder.path().join("session.mcap"));
+        let gap = "it has no ticks from 3.000 s to 5.000 s";
+        let end = "the recording was not closed: it ends at 8.000 s, where the program was killed or the file was cut";
+        assert_eq!(missing(&session), [gap, end]);
+        let cases = [
+            ("whole", 0..u64::MAX, vec![gap, end]),
+            ("first", 0..at(2000), vec![]),
+            ("before", 0..at(3000) + 1, vec![]),
+            ("into", at(1000)..at(4000), vec![gap]),
+            ("across", at(1000)..at(6000), vec![gap]),
+            ("after", at(5000)..at(6000), vec![]),
+            ("last", at(6000)..at(8000), vec![end]),
+        ];
+        for (name, times_ns, lines) in cases {
+            let part = excerpt(&session, &times_ns, &folder.path().join(format!("{name}.mcap")));
+            assert_eq!(missing(&part), lines, "{name}");
+            let again = excerpt(&part, &(0..u64::MAX), &folder.path().join(format!("{name}-again.mcap")));
+            assert_eq!(missing(&again), lines, "{name}, again");
+        }
+    }
+
+    #[test]
+    fn an_excerpt_of_a_damaged_file_names_its_original_session() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("session.mcap");
+        not_closed(&path);
+        let bytes = std::fs::read(&path).unwrap();
+        // The last byte belongs to the end of the file: all messages are readable.
+        let cut = SessionReader::of_bytes("cut.mcap", bytes[..bytes.len() - 1].to_vec()).unwrap();
+        let part = excerpt(&cut, &(0..at(2000)), &folder.path().join("part.mcap"));
+        let lines = missing(&part);
+        assert!(lines.iter().any(|line| line.starts_with("its original session: it is truncated")), "{lines:?}");
+    }
+
+    #[test]
+    fn lines_of_a_file_are_capped_and_without_control_characters() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part.mcap");
+        let mut writer = SessionWriter::create(&path, "test").unwrap();
+        let lines = "\u{1b}[31mred\n".repeat(100);
+        writer.metadata(trim::TABLE, &[("missing".to_owned(), lines)].into()).unwrap();
+        writer.finish().unwrap();
+        let lines = missing(&SessionReader::open(&path).unwrap());
+        assert_eq!(lines.len(), LINES_MAX + 1);
+        assert!(lines.iter().all(|line| !line.contains(char::is_control)), "{lines:?}");
     }
 }

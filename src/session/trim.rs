@@ -11,9 +11,14 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
+use nima_files::{PASSAGE, shortened};
 use nima_recording::session::{ChannelId, ReadError, SessionMessage, SessionReader, SessionWriter, WriteError};
 
-use crate::{plot_channels, recorder::JOURNAL_TOPIC};
+use crate::{
+    completeness::{self, MissingLine},
+    plot_channels,
+    recorder::JOURNAL_TOPIC,
+};
 
 /// The table with the origin of an excerpt.
 pub(crate) const TABLE: &str = "cut";
@@ -23,6 +28,9 @@ pub(crate) const CLOCK_TABLE: &str = "clock";
 pub(crate) const BEGINNING: &str = "session_begins_ns";
 /// Key in the table of an excerpt: name of the session.
 pub(crate) const SESSION: &str = "session";
+/// Key in the table of an excerpt: the data that its session lacks, one line each. Absent if it lacks none, and in
+/// excerpts of older versions.
+const MISSING: &str = "missing";
 
 #[derive(Debug, thiserror::Error)]
 pub enum CutError {
@@ -66,7 +74,8 @@ impl JournalOutcome {
 }
 
 /// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is the
-/// session's name in the table with the excerpt's origin. Setting `asked` stops the writing early.
+/// session's name in the table with the excerpt's origin; the table also names the data that the session lacks in this
+/// time. Setting `asked` stops the writing early.
 ///
 /// # Errors
 /// [`CutError`] if the session cannot be read or the file cannot be written. The caller must then delete the file.
@@ -84,7 +93,10 @@ pub fn write(
     let mut writer = SessionWriter::create(to, reader.library())?;
     let mut tables = reader.metadata()?;
     let before = tables.iter().position(|(name, _)| name == TABLE).map(|place| tables.remove(place).1);
-    tables.push((TABLE.to_owned(), table(name, begin_ns, times_ns, journal, before.as_ref())));
+    let mut table = table(name, begin_ns, times_ns, journal, before.as_ref());
+    let missing = completeness::missing_in_excerpt(reader, times_ns, asked)?;
+    note_missing(&mut table, missing.into_iter().map(MissingLine::of_excerpt).collect());
+    tables.push((TABLE.to_owned(), table));
     for (name, entries) in &tables {
         writer.metadata(name, entries)?;
     }
@@ -143,6 +155,19 @@ pub(crate) fn table(
         table.insert(key.to_owned(), value.to_owned());
     }
     table
+}
+
+/// Adds the data that the session lacks, one line each, to the table of its excerpt.
+pub(crate) fn note_missing(table: &mut BTreeMap<String, String>, lines: Vec<String>) {
+    if !lines.is_empty() {
+        table.insert(MISSING.to_owned(), completeness::capped(lines).join("\n"));
+    }
+}
+
+/// Returns the data that the original session of an excerpt with this table lacks, one line each. The text comes from a
+/// file, so it is shortened, and control characters are escaped.
+pub(crate) fn missing_in_original(table: &BTreeMap<String, String>) -> impl Iterator<Item = String> {
+    table.get(MISSING).map_or("", String::as_str).lines().map(|line| shortened(line, PASSAGE))
 }
 
 /// Returns the table of an excerpt: its times (s) in a session that begins at `begin_ns`.

@@ -202,6 +202,7 @@ impl SessionFigures {
                         self.about = table;
                     } else if name == trim::TABLE {
                         self.stretch = true;
+                        self.notes.extend(trim::missing_in_original(&table));
                     }
                 }
             }

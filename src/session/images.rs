@@ -29,7 +29,7 @@ pub(crate) const FIGURES_SCHEMA: &str = r#"{
   "properties": {
     "number": {"type": "integer", "description": "Pictures before it in this session"},
     "bytes": {"type": "integer"},
-    "dropped": {"type": "integer", "description": "Pictures that were not recorded so far, because the disk was too slow"},
+    "dropped": {"type": "integer", "description": "Pictures that were not recorded so far, because the disk was too slow or the camera too fast"},
     "camera_s": {"type": "number", "description": "The camera's own stamp, s since some moment of its own; left out where it sends none"}
   },
   "required": ["number", "bytes", "dropped"]
@@ -73,6 +73,8 @@ pub struct PendingImage {
     /// The camera's own time stamp, s, from an arbitrary origin.
     pub camera_s: Option<f64>,
     pub coding: ImageCoding,
+    /// Whether a decoder can begin with it: a JPEG, or a key frame of a stream.
+    pub is_key: bool,
     /// Unmodified from the camera.
     pub data: Vec<u8>,
 }

@@ -51,7 +51,7 @@ fn taken(arrived: Instant, time_us: u64) -> PendingImage {
     let mut rgb = vec![90; 3 * SIZE_PX[0] * SIZE_PX[1]];
     time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
     let data = jpeg::encode(&rgb, SIZE_PX, 90);
-    PendingImage { arrived, camera_s: Some(time_us as f64 * 1e-6), coding: ImageCoding::Jpeg, data }
+    PendingImage { arrived, camera_s: Some(time_us as f64 * 1e-6), coding: ImageCoding::Jpeg, is_key: true, data }
 }
 
 impl RecordedImageSource for Camera {
@@ -94,7 +94,8 @@ impl RecordedImageSource for Streaming {
         }
         self.due = now + PERIOD;
         self.number += 1;
-        Some(PendingImage { arrived: now, camera_s: None, coding: ImageCoding::H264, data: vec![self.number - 1; 100] })
+        let data = vec![self.number - 1; 100];
+        Some(PendingImage { arrived: now, camera_s: None, coding: ImageCoding::H264, is_key: is_key(&data), data })
     }
 
     fn dropped(&self) -> u64 {

@@ -12,7 +12,7 @@ pub struct ImageReport {
     pub count: u64,
     /// Total size, bytes.
     pub bytes: u64,
-    /// Number of images that are missing because the disk was too slow.
+    /// Number of images that are missing because the disk was too slow or the camera too fast.
     pub dropped: u64,
     /// Arrival of the first and the last image, s since the start of the session.
     pub times_s: [f64; 2],

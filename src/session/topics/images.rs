@@ -8,6 +8,7 @@ use nima_recording::{
     session::WriteError,
 };
 use prost::Message as _;
+use tracing::warn;
 
 use crate::{
     images::{
@@ -20,10 +21,16 @@ use crate::{
 /// The frame of the images: its axes are the image axes.
 const FRAME: &str = "endoscope";
 
-/// Maximum rate of recorded images, and how many may come at once: more than an endoscope sends, and few enough that a
-/// wrong setting of a camera does not fill the disk.
+/// Maximum rate of recorded images, 1/s, and how many may come at once: more than an endoscope sends, and few enough that
+/// a wrong setting of a camera does not fill the disk.
 const RATE_MAX_HZ: f64 = 120.0;
 const AT_ONCE_MAX: f64 = 12.0;
+/// Maximum rate of recorded bytes, 1/s: 4096 x 2160 pixels at 60 Hz with 1 bit each, for which a JPEG has excellent
+/// quality (0.75 to 1.5 bits per pixel: Wallace, The JPEG still picture compression standard, CACM 34(4), 1991). H.264
+/// needs less.
+const BYTES_MAX_HZ: f64 = 4096.0 * 2160.0 * 60.0 / 8.0;
+/// As many seconds of bytes may come at once as of images.
+const BYTES_AT_ONCE_MAX: f64 = BYTES_MAX_HZ * AT_ONCE_MAX / RATE_MAX_HZ;
 
 /// Writes the images of a source as soon as the loop's tick of their time has passed.
 #[derive(Debug)]
@@ -36,9 +43,15 @@ pub(crate) struct ImageChannel {
     figures: Option<SinkChannel>,
     number: u64,
     last_s: f64,
-    /// Images that may be written now, and that were left out because too many came.
+    /// Images and bytes that may be written now, and images that were left out because too many came. The last image
+    /// may exceed the bytes; the later ones wait for it.
     room: f64,
+    room_bytes: f64,
     left_out: u64,
+    /// Whether images are left out, of a stream until its next key frame.
+    skips: bool,
+    /// Time of the first image that was left out, s, until it has been reported.
+    excess_s: Option<f64>,
 }
 
 impl ImageChannel {
@@ -52,13 +65,21 @@ impl ImageChannel {
             number: 0,
             last_s: 0.0,
             room: AT_ONCE_MAX,
+            room_bytes: BYTES_AT_ONCE_MAX,
             left_out: 0,
+            skips: false,
+            excess_s: None,
         }
     }
 
     /// Returns the numbers of written and dropped images.
     pub(crate) fn counts(&self) -> [u64; 2] {
         [self.number, self.source.dropped() + self.left_out]
+    }
+
+    /// Returns once when the first image was left out because too many came, s.
+    pub(crate) fn take_excess(&mut self) -> Option<f64> {
+        self.excess_s.take()
     }
 
     /// Writes the images that arrived up to this time of the loop, s; `t_s_of` computes the time of an image, and
@@ -80,20 +101,29 @@ impl ImageChannel {
             // The estimated clock may be corrected slightly backwards.
             let before_s = self.last_s;
             self.last_s = self.last_s.max(at_s);
-            self.room = (self.room + (self.last_s - before_s) * RATE_MAX_HZ).min(AT_ONCE_MAX);
-            // The frames of a video refer to each other, so none is left out.
-            if self.room < 1.0 && taken.coding == ImageCoding::Jpeg {
+            let passed_s = self.last_s - before_s;
+            self.room = (self.room + passed_s * RATE_MAX_HZ).min(AT_ONCE_MAX);
+            self.room_bytes = (self.room_bytes + passed_s * BYTES_MAX_HZ).min(BYTES_AT_ONCE_MAX);
+            let has_room = self.room >= 1.0 && self.room_bytes > 0.0;
+            // The frames of a stream refer to earlier ones, so it continues only at a key frame.
+            self.skips = !has_room || (self.skips && !taken.is_key);
+            if self.skips {
+                if self.left_out == 0 {
+                    warn!("images are left out of the session: the camera sends too many or too large ones");
+                    self.excess_s = Some(self.last_s);
+                }
                 self.left_out += 1;
                 continue;
             }
             self.room -= 1.0;
+            self.room_bytes -= taken.data.len() as f64;
             self.write(out, time_ns(self.last_s), taken)?;
         }
         Ok(())
     }
 
     fn write(&mut self, out: &mut SessionSinks, time_ns: u64, taken: PendingImage) -> Result<(), WriteError> {
-        let PendingImage { arrived: _, camera_s, coding, data } = taken;
+        let PendingImage { arrived: _, camera_s, coding, is_key: _, data } = taken;
         let [number, dropped] = self.counts();
         let report =
             ImageFigures { number, bytes: data.len() as u64, dropped, camera_s: camera_s.filter(|s| s.is_finite()) };
@@ -136,21 +166,33 @@ fn opened<C: Copy>(channel: &mut Option<C>, open: impl FnOnce() -> Result<C, Wri
 mod tests {
     use std::time::Instant;
 
-    use nima_recording::session::SessionWriter;
+    use nima_recording::session::{SessionReader, SessionWriter};
 
     use super::*;
 
-    /// Sends two thousand images in a second.
-    #[derive(Debug)]
-    struct Fast(u32, ImageCoding);
+    /// Sends more than is recorded.
+    #[derive(Clone, Copy, Debug)]
+    struct Fast {
+        coding: ImageCoding,
+        rate_hz: f64,
+        count: u32,
+        key_every: u32,
+        bytes: usize,
+        sent: u32,
+    }
 
     impl RecordedImageSource for Fast {
         fn image(&mut self) -> Option<PendingImage> {
-            let number = self.0;
-            self.0 += 1;
-            let camera_s = Some(f64::from(number) * 5e-4);
-            let image = PendingImage { arrived: Instant::now(), camera_s, coding: self.1, data: vec![1; 10] };
-            (number < 2000).then_some(image)
+            let Self { coding, rate_hz, count, key_every, bytes, sent } = *self;
+            if sent == count {
+                return None;
+            }
+            self.sent += 1;
+            let mut data = vec![1; bytes];
+            data[..4].copy_from_slice(&sent.to_le_bytes());
+            let camera_s = Some(f64::from(sent) / rate_hz);
+            let is_key = sent.is_multiple_of(key_every);
+            Some(PendingImage { arrived: Instant::now(), camera_s, coding, is_key, data })
         }
 
         fn dropped(&self) -> u64 {
@@ -158,16 +200,61 @@ mod tests {
         }
     }
 
+    /// Records everything that the camera sends; returns the numbers of the written images.
+    fn written(camera: Fast) -> Vec<u32> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("session.mcap");
+        let mut out = SessionSinks::of(SessionWriter::create(&path, "test").unwrap());
+        let mut channel = ImageChannel::new(Box::new(camera));
+        channel.until(&mut out, 2.0, |taken| taken.camera_s, |t_s| (t_s * 1e9) as u64).unwrap();
+        let [number, left_out] = channel.counts();
+        assert_eq!(number + left_out, u64::from(camera.count), "{camera:?}");
+        assert_eq!((channel.take_excess().is_some(), channel.take_excess()), (left_out > 0, None), "{camera:?}");
+        out.finish().unwrap();
+        let reader = SessionReader::open(&path).unwrap();
+        let messages = reader.messages(&[IMAGE_TOPIC, VIDEO_TOPIC], 0..u64::MAX);
+        let numbers: Vec<u32> = messages
+            .map(|message| {
+                let message = message.unwrap();
+                let data = match camera.coding {
+                    ImageCoding::Jpeg => CompressedImage::decode(message.data()).unwrap().data.to_vec(),
+                    ImageCoding::H264 => CompressedVideo::decode(message.data()).unwrap().data.to_vec(),
+                };
+                u32::from_le_bytes(data[..4].try_into().unwrap())
+            })
+            .collect();
+        assert_eq!(numbers.len() as u64, number, "{camera:?}");
+        numbers
+    }
+
     #[test]
     fn a_camera_that_sends_too_much_does_not_fill_the_disk() {
-        let folder = tempfile::tempdir().unwrap();
-        for (coding, written) in [(ImageCoding::Jpeg, 120..=133), (ImageCoding::H264, 2000..=2000)] {
-            let file = SessionWriter::create(&folder.path().join(coding.name()), "test").unwrap();
-            let mut out = SessionSinks::of(file);
-            let mut channel = ImageChannel::new(Box::new(Fast(0, coding)));
-            channel.until(&mut out, 2.0, |taken| taken.camera_s, |t_s| (t_s * 1e9) as u64).unwrap();
-            let [number, left_out] = channel.counts();
-            assert!(written.contains(&number) && number + left_out == 2000, "{number}, {left_out}");
+        let many = Fast { coding: ImageCoding::Jpeg, rate_hz: 2000.0, count: 2000, key_every: 1, bytes: 10, sent: 0 };
+        let numbers = written(many);
+        assert!((120..=133).contains(&numbers.len()), "{} images in 1 s", numbers.len());
+        let large = Fast { rate_hz: 120.0, count: 30, bytes: 1_200_000, ..many };
+        let bytes = written(large).len() * large.bytes;
+        let seconds = f64::from(large.count) / large.rate_hz;
+        let bytes_max = BYTES_AT_ONCE_MAX + BYTES_MAX_HZ * seconds + large.bytes as f64;
+        assert!((bytes as f64) < bytes_max && bytes as f64 > BYTES_MAX_HZ * seconds, "{bytes} bytes in {seconds} s");
+        let usual = Fast { rate_hz: 60.0, count: 30, bytes: 500_000, ..many };
+        assert_eq!(written(usual).len(), 30);
+    }
+
+    #[test]
+    fn a_stream_that_sends_too_much_is_continued_at_its_key_frames() {
+        let many = Fast { coding: ImageCoding::H264, rate_hz: 2000.0, count: 2000, key_every: 100, bytes: 10, sent: 0 };
+        let large = Fast { rate_hz: 100.0, count: 50, key_every: 10, bytes: 1_500_000, ..many };
+        for camera in [many, large] {
+            let numbers = written(camera);
+            let seconds = f64::from(camera.count) / camera.rate_hz;
+            assert!(numbers.len() as f64 <= RATE_MAX_HZ * seconds + AT_ONCE_MAX + 1.0, "{numbers:?}");
+            let bytes = (numbers.len() * camera.bytes) as f64;
+            assert!(bytes < BYTES_AT_ONCE_MAX + BYTES_MAX_HZ * seconds + camera.bytes as f64, "{bytes} bytes");
+            // A frame without its predecessor cannot be shown.
+            let continues = |pair: &[u32]| pair[1] == pair[0] + 1 || pair[1].is_multiple_of(camera.key_every);
+            assert!(numbers[0] == 0 && numbers.windows(2).all(continues), "{numbers:?}");
+            assert!(numbers.iter().filter(|number| number.is_multiple_of(camera.key_every)).count() > 2, "{numbers:?}");
         }
     }
 }

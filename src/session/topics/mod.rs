@@ -203,8 +203,14 @@ impl SessionTopics {
         time_ns: impl Fn(f64) -> u64,
     ) -> Result<[u64; 2], WriteError> {
         let Some(images) = &mut self.images else { return Ok([0; 2]) };
-        images.until(out, t_s, t_s_of, time_ns)?;
-        Ok(images.counts())
+        images.until(out, t_s, t_s_of, &time_ns)?;
+        let counts = images.counts();
+        if let Some(at_s) = images.take_excess() {
+            let words = "the camera sends too many or too large images: some are left out of the session".to_owned();
+            let note = LogNote { kind: NoteKind::Alarm, warns: true, words, names: false };
+            self.note(out, time_ns(at_s), note)?;
+        }
+        Ok(counts)
     }
 
     /// Writes a tick and the events in it.

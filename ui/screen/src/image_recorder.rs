@@ -17,8 +17,11 @@ impl RecordedImageSource for OfEndoscope {
     fn image(&mut self) -> Option<PendingImage> {
         let CompressedFrame { format, bytes, arrived, stamp_s, .. } = self.0.take()?;
         // The queue contains only compressed images.
-        let coding = if matches!(format, Format::H264 { .. }) { ImageCoding::H264 } else { ImageCoding::Jpeg };
-        Some(PendingImage { arrived, camera_s: stamp_s, coding, data: bytes })
+        let (coding, is_key) = match format {
+            Format::H264 { is_key } => (ImageCoding::H264, is_key),
+            Format::Jpeg | Format::Raw(_) => (ImageCoding::Jpeg, true),
+        };
+        Some(PendingImage { arrived, camera_s: stamp_s, coding, is_key, data: bytes })
     }
 
     fn dropped(&self) -> u64 {

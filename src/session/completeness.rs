@@ -5,17 +5,24 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use nima_recording::session::{ChannelId, ReaderMessages, SessionMessage, SessionReader};
+use nima_machine::runtime::Operation;
+use nima_recording::{
+    messages::foxglove::Log,
+    session::{ChannelId, ReaderMessages, SessionMessage, SessionReader},
+};
+use prost::Message as _;
 
 use crate::{
     journal::{MessageOutline, outline},
+    logged::LogValue,
     plot_channels::{self, arms, topic},
     recorder::JOURNAL_TOPIC,
+    topics::LOG_TOPIC,
     trim::{self, CutError},
 };
 
-/// A longer time between two ticks is reported, s. The loop has a tick in every period; half a second is more than a
-/// busy computer delays it.
+/// A longer time between two ticks is reported, s, unless the log names it as a stall of the computer. The loop has a
+/// tick in every period; half a second is more than a busy computer delays it.
 const GAP_MAX_S: f64 = 0.5;
 /// The same, ns: an excerpt that ends this shortly before the end of a session reaches its end.
 const GAP_MAX_NS: u64 = 500_000_000;
@@ -24,7 +31,8 @@ const LINES_MAX: usize = 20;
 /// Replaces the lines of an anonymous excerpt that may contain text of the session.
 const WITHHELD_LINE: &str = "its original session is damaged or lacks data";
 
-/// Returns the faults of a session, one line each; empty for a whole one. Reads the journal and the forces completely.
+/// Returns the faults of a session, one line each; empty for a whole one. Reads the journal, the log and the forces
+/// completely.
 ///
 /// The times are in seconds since the start of the session.
 pub fn missing(reader: &SessionReader) -> Vec<String> {
@@ -84,7 +92,7 @@ impl MissingLine {
 }
 
 /// Returns the lines about data that an excerpt of these times (ns) lacks because its session lacks them. Reads the
-/// journal and the forces completely; setting `asked` stops the reading early.
+/// journal, the log and the forces completely; setting `asked` stops the reading early.
 ///
 /// # Errors
 /// [`CutError::Asked`] once cancellation was requested.
@@ -119,10 +127,13 @@ pub struct CompletenessCheck<'a> {
     messages: ReaderMessages<'a>,
     begin_ns: u64,
     journal: Option<ChannelId>,
+    log: Option<ChannelId>,
     is_excerpt: bool,
     is_closed: bool,
     /// Time of the last tick.
     last_ns: Option<u64>,
+    /// Time of the first tick after the last stall.
+    stalled_ns: Option<u64>,
     /// Time of the last message of the journal.
     block_ns: u64,
     lines: Vec<MissingLine>,
@@ -140,15 +151,18 @@ impl<'a> CompletenessCheck<'a> {
         let original = excerpts().flat_map(|(_, table)| trim::missing_in_original(table)).take(LINES_MAX + 1);
         lines.extend(original.map(|text| MissingLine::new(text, MissingExtent::Original)));
         let forces: Vec<String> = arms(reader).into_iter().map(|side| topic(side, "forces")).collect();
-        let topics: Vec<&str> = forces.first().map(String::as_str).into_iter().chain([JOURNAL_TOPIC]).collect();
-        let journal = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC);
+        let forces = forces.first().map(String::as_str);
+        let topics: Vec<&str> = forces.into_iter().chain([JOURNAL_TOPIC, LOG_TOPIC]).collect();
+        let channel = |topic: &str| reader.channels().iter().find(|channel| channel.topic == topic).map(|one| one.id);
         Self {
             messages: reader.messages(&topics, 0..u64::MAX),
             begin_ns: plot_channels::beginning_ns(reader).unwrap_or(reader.statistics().times_ns.0),
-            journal: journal.map(|channel| channel.id),
+            journal: channel(JOURNAL_TOPIC),
+            log: channel(LOG_TOPIC),
             is_excerpt: excerpts().next().is_some(),
             is_closed: false,
             last_ns: None,
+            stalled_ns: None,
             block_ns: 0,
             lines,
         }
@@ -160,6 +174,7 @@ impl<'a> CompletenessCheck<'a> {
             None => return false,
             Some(Err(error)) => self.add(error.to_string(), MissingExtent::Unreadable),
             Some(Ok(message)) if Some(message.channel()) == self.journal => self.of_journal(&message),
+            Some(Ok(message)) if Some(message.channel()) == self.log => self.of_log(&message),
             Some(Ok(message)) => self.tick(message.log_time_ns()),
         }
         true
@@ -215,10 +230,19 @@ impl<'a> CompletenessCheck<'a> {
         }
     }
 
+    /// Notes a stall of the loop, whose line in the log has the time of the tick before it.
+    fn of_log(&mut self, message: &SessionMessage) {
+        let Ok(line) = Log::decode(message.data()) else { return };
+        let value = line.value.as_deref().and_then(LogValue::decode);
+        if let Some(LogValue::Operation(Operation::Stall { t_s, .. })) = value {
+            self.stalled_ns = Some(self.begin_ns.saturating_add((t_s.max(0.0) * 1e9).round() as u64));
+        }
+    }
+
     fn tick(&mut self, time_ns: u64) {
         let Some(last_ns) = self.last_ns.replace(time_ns) else { return };
         let [from_s, to_s] = [last_ns, time_ns].map(|time_ns| self.seconds(time_ns));
-        if to_s - from_s > GAP_MAX_S {
+        if to_s - from_s > GAP_MAX_S && self.stalled_ns != Some(time_ns) {
             let extent = MissingExtent::Times(last_ns.saturating_add(1), time_ns.saturating_sub(1));
             self.add(format!("it has no ticks from {from_s:.3} s to {to_s:.3} s"), extent);
         }
@@ -229,9 +253,16 @@ impl<'a> CompletenessCheck<'a> {
 mod tests {
     use std::path::Path;
 
-    use nima_recording::session::{Encoding, SessionWriter};
+    use nima_recording::{
+        messages::foxglove::Level,
+        session::{Encoding, SessionWriter},
+    };
 
     use super::*;
+    use crate::{
+        journal::{JournalEncoder, JournalEnd},
+        topics::{LINE, line},
+    };
 
     const BEGIN_NS: u64 = 1_700_000_000_000_000_000;
 
@@ -291,6 +322,35 @@ mod tests {
         let part = excerpt(&cut, &(0..at(2000)), &folder.path().join("part.mcap"));
         let lines = missing(&part);
         assert!(lines.iter().any(|line| line.starts_with("its original session: it is truncated")), "{lines:?}");
+    }
+
+    #[test]
+    fn a_stall_that_the_log_names_is_not_a_loss() {
+        let folder = tempfile::tempdir().unwrap();
+        let stalls = [("none", None, 1), ("named", Some(2.0), 0), ("another", Some(0.5), 1)];
+        for (name, stalled_s, lines) in stalls {
+            let path = folder.path().join(format!("{name}.mcap"));
+            let mut writer = SessionWriter::create(&path, "test").unwrap();
+            let channel = |writer: &mut SessionWriter, topic: &str| writer.channel(topic, Encoding::default()).unwrap();
+            let [journal, log, forces] =
+                [JOURNAL_TOPIC, LOG_TOPIC, "right/forces"].map(|topic| channel(&mut writer, topic));
+            for ms in (0..=3000).step_by(10).filter(|ms| !(991..2000).contains(ms)) {
+                writer.message(forces, at(ms), b"").unwrap();
+                if let Some(t_s) = stalled_s.filter(|_| ms == 990) {
+                    let value = LogValue::Operation(Operation::Stall { silent_s: 0.02, t_s });
+                    let line = line(at(ms), Level::Info, LINE, "a stall".to_owned(), Some(&value));
+                    writer.message(log, at(ms), &line).unwrap();
+                }
+            }
+            let end = JournalEncoder::default().end(&JournalEnd { ticks: 0, lost: 0 });
+            writer.message(journal, at(3000), &end).unwrap();
+            writer.finish().unwrap();
+            let session = SessionReader::open(&path).unwrap();
+            assert_eq!(missing(&session).len(), lines, "{name}: {:?}", missing(&session));
+            // Without the journal.
+            let part = excerpt(&session, &(at(500)..at(2500)), &folder.path().join(format!("{name}-part.mcap")));
+            assert_eq!(missing(&part).len(), lines, "{name}: {:?}", missing(&part));
+        }
     }
 
     #[test]

@@ -128,7 +128,16 @@ pub fn read_signals(path: &Path, mapping: &ColumnMapping) -> Result<Signals, Bag
         position_m: at(&positions, time_ns),
         force_n: at(&forces, time_ns),
     };
-    Ok(Signals::new(times_ns.into_iter().map(row).collect()))
+    Ok(Signals { notes: reader.notes().to_vec(), ..Signals::new(times_ns.into_iter().map(row).collect()) })
+}
+
+/// Returns the faults of a recording, one line each; empty for a sound one. A recording that was cut is read up to its cut.
+/// The path may be the folder of a bag.
+///
+/// # Errors
+/// [`BagError`] if the recording cannot be read.
+pub fn missing(path: &Path) -> Result<Vec<String>, BagError> {
+    Ok(SessionReader::open(&file_of(path)?)?.notes().to_vec())
 }
 
 fn is_named(mapping: &ColumnMapping, axis: &str) -> bool {
@@ -356,6 +365,23 @@ mod tests {
         assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("no .mcap file"));
         std::fs::write(empty.path().join("bag_0.db3"), "").unwrap();
         assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("ros2 bag convert"));
+    }
+
+    #[test]
+    fn a_recording_that_was_cut_is_read_and_its_fault_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        bag(&path);
+        let maps = mapping(&["z=/tool/pose.pose.position.z", "fz=/ft/wrench.wrench.force.z"]);
+        assert_eq!((missing(&path).unwrap(), read_signals(&path, &maps).unwrap().notes), (Vec::new(), Vec::new()));
+        let bytes = std::fs::read(&path).unwrap();
+        // The last byte belongs to the end of the file: all messages are readable.
+        std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+        for place in [path.as_path(), folder.path()] {
+            let lines = missing(place).unwrap();
+            assert!(lines.iter().any(|line| line.contains("truncated")), "{lines:?}");
+            assert_eq!(read_signals(place, &maps).unwrap().notes, lines);
+        }
     }
 
     /// Writes joint states of an arm, of a gripper on the same topic, and one unknown angle; the clock goes by `time_ns`.

@@ -19,6 +19,8 @@ const MAX_GAP_S: f64 = 2.5;
 pub struct Signals {
     /// Times count from the first row, s. NaN where a value is unknown.
     pub rows: Vec<Sample>,
+    /// Faults of the file, one line each; empty for a sound file.
+    pub notes: Vec<String>,
 }
 
 impl Signals {
@@ -28,7 +30,7 @@ impl Signals {
         for row in &mut rows {
             row.t_s -= first_s;
         }
-        Self { rows }
+        Self { rows, notes: Vec::new() }
     }
 
     /// Returns on which axes a force is ever known.

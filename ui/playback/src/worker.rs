@@ -71,7 +71,7 @@ pub(super) enum WorkerAnswer {
     Read(Overview),
     /// The rest is available only from the recorded plots, for this reason.
     Limited(String),
-    /// The session lacks this, one line each.
+    /// The session or the other recording lacks this, one line each.
     Lacks(Vec<String>),
     Shown(Box<LiveState>, WorkerExtent, f64),
     /// The moment, continued by these ticks; `None` at the end of the session.
@@ -156,6 +156,9 @@ fn run(
         signals: file.signals().cloned(),
     };
     sender.notify(WorkerAnswer::Opened(Box::new(opened)));
+    if let Some(signals) = file.signals().filter(|signals| !signals.notes.is_empty()) {
+        sender.notify(WorkerAnswer::Lacks(signals.notes.clone()));
+    }
     let mut reading = FirstReading {
         part: Overview::default(),
         reported_at: Instant::now(),

@@ -1,4 +1,4 @@
-//! Warnings about a session that is not whole.
+//! Warnings about a session or another recording that is not whole.
 
 use std::path::Path;
 
@@ -10,8 +10,13 @@ use nima_session::completeness;
 /// Prints what a session lacks to stderr, one line each; returns the lines.
 pub(crate) fn report_missing(session: &Path, reader: &SessionReader) -> Vec<String> {
     let missing = completeness::missing(reader);
-    for line in &missing {
-        print_line(format_args!("nima: {}: {line}", quoted(&session.display().to_string())));
-    }
+    print_missing(session, &missing);
     missing
+}
+
+/// Prints what a recording lacks to stderr, one line each.
+pub(crate) fn print_missing(recording: &Path, missing: &[String]) {
+    for line in missing {
+        print_line(format_args!("nima: {}: {line}", quoted(&recording.display().to_string())));
+    }
 }

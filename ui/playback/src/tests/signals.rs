@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nima_recording::csv::{ColumnMapping, read_signals};
+use nima_recording::csv::{ColumnMapping, Signals, read_signals};
 
 use super::*;
 
@@ -56,6 +56,18 @@ fn a_table_of_forces_only_is_shown_and_the_rest_is_unknown() {
     past.toggle();
     past.step(0.5, false);
     until(&mut past, "plays", |past| past.shown_s() > before_s + 0.4);
+}
+
+#[test]
+fn the_faults_of_another_programs_file_are_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("table.csv");
+    std::fs::write(&path, "t_s,fx_n\n0,1\n0.5,2\n1,3\n").unwrap();
+    let signals = read_signals(&path, &ColumnMapping::default()).unwrap();
+    let signals = Signals { notes: vec!["it is truncated".to_owned()], ..signals };
+    let mut past = Playback::open_signals(&path, &Arc::new(signals), &Context::default());
+    until(&mut past, "what is missing", |past| !past.report.lacks.is_empty());
+    assert!(past.report.trouble().unwrap().contains("it is truncated"));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use nima_recording::{
 };
 use nima_session::{RecordingKind, plot_channels};
 
-use crate::command::missing::report_missing;
+use crate::command::missing::{print_missing, report_missing};
 
 /// Reads a recording; `map` applies to tables, `arm` to sessions. The leader's own motion is rejected, because callers
 /// do not use it.
@@ -38,7 +38,11 @@ pub(super) fn read_with_leader(path: &Path, map: &[String], arm: Option<Side>) -
             path.display()
         ),
         RecordingKind::Table => Ok(CsvRecording::read(path, &mapping)?),
-        RecordingKind::Bag => Ok(bag::read(path, &mapping)?),
+        RecordingKind::Bag => {
+            let recording = bag::read(path, &mapping)?;
+            print_missing(path, &bag::missing(path)?);
+            Ok(recording)
+        }
         RecordingKind::Session => {
             report_missing(path, &SessionReader::open(path)?);
             Ok(plot_channels::recording(path, arm)?)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import NamedTuple
@@ -64,7 +65,7 @@ class Attachment(NamedTuple):
 
 
 class Session:
-    """A recorded session. Chunks are read on demand.
+    """A recorded session. Chunks are read on demand. The first read of its data warns of data that the session lacks.
 
     Parameters
     ----------
@@ -82,6 +83,15 @@ class Session:
     def __init__(self, path: str | PathLike[str]) -> None:
         self._path = fspath(path)
         self._native = _nima.Session(path)
+        self._has_warned = False
+
+    def _warn(self) -> None:
+        """Warns once of the data that the file lacks, at the line that called the public method."""
+        if self._has_warned:
+            return
+        self._has_warned = True
+        for note in self.notes:
+            warnings.warn(f"{self._path}: {note}", stacklevel=3)
 
     @property
     def arms(self) -> list[str]:
@@ -135,6 +145,7 @@ class Session:
         ValueError
             The session lacks this arm, or has two and ``arm`` is missing; an empty time range; a damaged chunk.
         """
+        self._warn()
         return Ticks(**self._native.ticks(arm, from_s, to_s))
 
     def plot(self, topic: str, *, from_s: float | None = None, to_s: float | None = None) -> dict[str, Floats]:
@@ -145,6 +156,7 @@ class Session:
         ValueError
             The channel is missing or has other messages, the time range is empty, or a chunk is damaged.
         """
+        self._warn()
         return self._native.plot(topic, from_s, to_s)
 
     def events(self, *, from_s: float | None = None, to_s: float | None = None) -> list[Event]:
@@ -155,6 +167,7 @@ class Session:
         ValueError
             An empty time range, or a damaged chunk.
         """
+        self._warn()
         return [Event(*line) for line in self._native.events(from_s, to_s)]
 
     def recording(self, arm: str | None = None) -> Recording:

@@ -193,6 +193,11 @@ fn a_session_that_is_not_whole_is_reported_and_marked_in_the_table() {
             assert!(told.contains(words), "{all:?}: {told}");
         }
     }
+    // An excerpt of a damaged session is closed, but lacks the same data.
+    let exported = nima(&["export", &at("cut.mcap"), "--out", &at("excerpt.mcap")]);
+    assert!(exported.status.success(), "{exported:?}");
+    let (report, row) = scored(&at("excerpt.mcap"), &at("excerpt.csv"));
+    assert!(report.contains("the recording was not closed") && row.contains(".mcap,no,"), "{report}{row}");
     let report = nima(&["score", &at("damaged.mcap")]);
     let told = String::from_utf8_lossy(&report.stderr).into_owned();
     assert!(told.contains("damaged.mcap: ") && told.contains("chunk"), "{told}");

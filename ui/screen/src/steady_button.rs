@@ -52,8 +52,22 @@ impl SteadyButton<'_> {
         self.show(ui, look).1
     }
 
+    /// Like [`Self::ui`]; `by_key`: the key of the button was pressed in this frame, which counts as a click.
+    pub fn ui_by_key(self, ui: &mut Ui, by_key: bool, look: impl FnOnce(String, bool) -> Button<'static>) -> bool {
+        self.show_or_key(ui, by_key, look).1
+    }
+
     /// Like [`Self::ui`], with the button's response.
     pub fn show(self, ui: &mut Ui, look: impl FnOnce(String, bool) -> Button<'static>) -> (Response, bool) {
+        self.show_or_key(ui, false, look)
+    }
+
+    fn show_or_key(
+        self,
+        ui: &mut Ui,
+        by_key: bool,
+        look: impl FnOnce(String, bool) -> Button<'static>,
+    ) -> (Response, bool) {
         let Self { id, label, meaning, may, waits_s } = self;
         let now_s = ui.input(|input| input.time);
         let mut state: SteadyState = ui.data(|data| data.get_temp(id)).unwrap_or_default();
@@ -70,7 +84,7 @@ impl SteadyButton<'_> {
             !enabled && response.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
         let pass = ui.ctx().cumulative_pass_nr();
         let was_seen = std::mem::replace(&mut state.drawn_pass, pass) + 1 == pass;
-        let clicked = was_seen && (response.clicked() || pressed_in_vain);
+        let clicked = by_key || was_seen && (response.clicked() || pressed_in_vain);
         if clicked {
             state.clicked_s = Some(now_s);
             state.has_changed = shown != label;

@@ -18,10 +18,11 @@ use nima_machine::{
     messages::{LoopState, Tick},
     rig::Side,
 };
+use nima_panels::tiles::{PanelId, PanelLayout};
 use nima_simulation::SimulationPlan;
 use nima_tests::plan;
 
-use crate::bench::{press, shown, until, wait};
+use crate::bench::{press, read, shown, until, wait};
 
 fn console_of(scene: &str, size: [f32; 2], engage: bool) -> Harness<'static, ConsoleApp> {
     shown(&SimulationPlan { engage, ..plan(scene) }, size, |app| app)
@@ -259,6 +260,27 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     until(&mut harness, "stopped and let go", |tick| {
         tick.state == LoopState::Stopped && tick.guidance.guide_m.is_none()
     });
+}
+
+#[test]
+fn a_key_that_cannot_drive_now_says_why() {
+    let mut harness = console();
+    press(&mut harness, "Stop");
+    until(&mut harness, "stopped", |tick| tick.state == LoopState::Stopped);
+    harness.key_press(Key::M);
+    read(&mut harness, "Only while the loop is idle or engaged");
+    assert!(harness.state().tick().unwrap().guidance.guide_m.is_none());
+}
+
+#[test]
+fn an_instrument_whose_view_is_hidden_by_a_tab_is_let_go() {
+    let mut harness = console();
+    press(&mut harness, "Drive by mouse (M)");
+    until(&mut harness, "led", |tick| tick.guidance.guide_m.is_some());
+    harness.state_mut().settings_mut().layout = PanelLayout { front: vec![PanelId::Devices], ..PanelLayout::default() };
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Operating field").is_none());
+    until(&mut harness, "let go", |tick| tick.guidance.guide_m.is_none());
 }
 
 #[test]

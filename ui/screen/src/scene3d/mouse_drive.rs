@@ -155,11 +155,17 @@ impl MouseDrive {
         let asked = if self.is_held {
             !self.is_on() && live.first_tick().is_some()
         } else {
-            let may = if runs { Ok(()) } else { Err(text::commands::NOT_NOW.get()) };
+            let may = if live.is_shown_only() {
+                Err(live.of.blocked())
+            } else if runs {
+                Ok(())
+            } else {
+                Err(text::commands::NOT_NOW.get())
+            };
+            let by_key = !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M));
             let button = SteadyButton { id: Id::unique("drive"), label: text, meaning: "", may, waits_s: 0.0 };
             let room = UiBuilder::new().max_rect(rect.intersect(place));
-            let clicked = ui.scope_builder(room, |ui| button.ui(ui, look)).inner;
-            clicked || !ui.ctx().text_edit_focused() && ui.input(|input| input.key_pressed(Key::M))
+            ui.scope_builder(room, |ui| button.ui_by_key(ui, by_key, look)).inner
         };
         if runs && asked {
             if self.is_on() {
@@ -191,7 +197,7 @@ impl MouseDrive {
     pub(super) fn restarts(self, live: &LiveState) -> bool {
         let scene = &live.scene;
         let has_trial = scene.is_searched() || scene.wire.is_some() || scene.objects.is_some();
-        has_trial && !self.is_held && !live.is_shown_only()
+        has_trial && !self.is_held && !live.is_shown_only() && live.rig.has_simulated_hand()
     }
 
     /// Applies mouse and keys in their order: at a low frame rate many of them arrive at once.

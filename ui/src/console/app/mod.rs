@@ -331,6 +331,7 @@ impl eframe::App for ConsoleApp {
         self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
         self.layout(ui);
         self.windows_layout(&ctx);
+        self.end_hidden_drive();
         if !matches!(self.shown, ShownPage::Start) {
             self.start.rest();
         }

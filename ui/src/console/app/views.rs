@@ -24,6 +24,14 @@ impl ConsoleApp {
         }
     }
 
+    /// Ends mouse control while no view shows the field: the person would not see the instrument, and could not end it.
+    pub(super) fn end_hidden_drive(&mut self) {
+        let scene = &mut self.panels.scene;
+        if scene.is_led() && !scene.is_seen {
+            scene.let_go(&mut self.outbox);
+        }
+    }
+
     /// Makes the loop compute what a panel shows, once the work without it is measured.
     pub(super) fn compute_shown(&mut self) {
         let is_seen = std::mem::take(&mut self.panels.degrees.is_seen);

@@ -179,8 +179,8 @@ pub fn scene_ui(ui: &mut Ui, live: &LiveState, view: &mut SceneView, outbox: &mu
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let rim = vignette::reserve(&ui.painter_at(rect));
     let camera = view.camera(&live.scene);
-    // Without devices the simulated hand can be driven in every view; with them, the surgeon uses the handle.
-    let offered = view.figures || live.rig.devices.is_none() || view.lead.is_on() || view.lead.is_held;
+    // Only a simulated hand follows the mouse. A real hand at the handle would stay where it is.
+    let offered = live.rig.has_simulated_hand();
     if view.figures {
         view.extras.ui(ui, rect);
     }

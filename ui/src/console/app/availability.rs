@@ -164,7 +164,10 @@ impl ConsoleApp {
             _ => true,
         };
         let runs = matches!(self.live.state(), LoopState::Idle | LoopState::Engaged);
-        let why = if !view.is_seen {
+        let has_simulated_hand = self.live.rig.has_simulated_hand();
+        let why = if !has_simulated_hand {
+            Some(text::commands::SIMULATED_HAND_ONLY.get())
+        } else if !view.is_seen {
             Some(text::commands::FIELD_IS_HIDDEN.get())
         } else if !runs {
             Some(text::commands::NOT_NOW.get())
@@ -174,9 +177,7 @@ impl ConsoleApp {
         };
         let is_here = match self.shown {
             ShownPage::OfExtra => self.in_trial(),
-            ShownPage::Monitor => {
-                self.role() != Role::Surgeon || view.is_seen && (view.is_led() || self.live.rig.devices.is_none())
-            }
+            ShownPage::Monitor => self.role() != Role::Surgeon || view.is_seen && has_simulated_hand,
             _ => false,
         };
         Availability::unless(why).only_if(is_offered && is_here)

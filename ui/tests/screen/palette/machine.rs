@@ -2,11 +2,14 @@
 
 use eframe::App as _;
 use egui::{Key, accesskit::Role as Kind};
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
 use nima_console::console::{ConsoleApp, commands::Action};
 use nima_core::impedance::Mode;
-use nima_machine::{messages::LoopState, rig::Side};
-use nima_simulation::SimulationPlan;
+use nima_machine::{config::RigConfig, messages::LoopState, rig::Side};
+use nima_simulation::{SimulationPlan, start_watched};
 use nima_tests::plan;
 
 use super::{FIELD, SIZE, alike, begin, by_key, choose, close, entry, expect, is_open, open, rows};
@@ -88,7 +91,7 @@ fn the_instrument_is_driven_from_the_palette_too() {
     read(&mut console, "Left instrument");
     by_key(&mut console, Action::OtherHand);
     read(&mut console, "Right instrument");
-    let is_open = |console: &egui_kittest::Harness<'_, ConsoleApp>| {
+    let is_open = |console: &Harness<'_, ConsoleApp>| {
         let jaws = console.state().objects().and_then(|objects| objects.jaws[Side::Right.index()]);
         jaws.is_some_and(|jaws| jaws.opening_rad > 0.4)
     };
@@ -101,6 +104,25 @@ fn the_instrument_is_driven_from_the_palette_too() {
         }
         wait(&mut console, "the jaws", |console| is_open(console) != before);
     }
+}
+
+/// The loop is simulated, so that no emulator is needed: only the console's rig has devices.
+#[test]
+fn a_hand_that_the_mouse_cannot_move_is_not_offered() {
+    let plan = plan("peg_transfer");
+    let (handle, _) = start_watched(&plan, 1.0).unwrap();
+    let rig = RigConfig { endoscope: None, ..RigConfig::load("emulated").unwrap() };
+    let scene = plan.scene;
+    let mut console = Harness::builder()
+        .with_size(SIZE)
+        .with_step_dt(1.0 / 30.0)
+        .build_eframe(move |cc| ConsoleApp::new(cc, handle, rig, scene).with_simulated_time(1.0));
+    until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
+    assert!(!shows(&console, "Drive by mouse"));
+    let greyed = rows(&mut console);
+    assert!(greyed.contains(&(entry(Action::Drive).title.clone(), false)), "{greyed:?}");
+    by_key(&mut console, Action::Drive);
+    assert!(console.state().tick().unwrap().guidance.guide_m.is_none());
 }
 
 #[test]

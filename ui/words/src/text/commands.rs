@@ -194,6 +194,10 @@ pub const PANEL_IS_CLOSED: Text = Text::of("Open the Traces panel first", "Zuers
 pub const FIELD_IS_HIDDEN: Text =
     Text::of("Bring the operating field to the front first", "Zuerst OP-Feld nach vorn holen");
 pub const NOT_NOW: Text = Text::of("Only while the loop is idle or engaged", "Nur im Leerlauf oder gekoppelt");
+pub const SIMULATED_HAND_ONLY: Text = Text::of(
+    "Only on a rig with a simulated hand: a person may hold the handle of this rig",
+    "Nur auf einem Aufbau mit simulierter Hand: hier kann ein Mensch das Handgerät halten",
+);
 pub const DRIVE_FIRST: Text = Text::of("Drive the instrument first (M)", "Zuerst Instrument steuern (M)");
 
 /// Prefixes of keys.

@@ -25,7 +25,7 @@ use nima_words::text;
 
 use self::{
     script::SCRIPT,
-    state::{may_play, may_show},
+    state::{may_play, why_not_shown},
 };
 use super::Panels;
 use crate::{force_space_ui, force_traces_ui, horizon_ui, tiles};
@@ -108,7 +108,9 @@ fn caption_ui(ui: &mut Ui, live: &LiveState, demo: &mut DemoState) {
         for (i, step) in SCRIPT.iter().enumerate() {
             let name = format!("{}. {}", i + 1, step.name);
             let button = Button::selectable(demo.step == i, name).frame_when_inactive(true).min_size(vec2(0.0, 30.0));
-            if ui.add_enabled(may_show(live, step), button).on_hover_text(step.words.get()).clicked() {
+            let why = why_not_shown(live, step);
+            let button = ui.add_enabled(why.is_none(), button).on_hover_text(step.words.get());
+            if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
                 demo.go_to(i);
             }
         }
@@ -118,7 +120,8 @@ fn caption_ui(ui: &mut Ui, live: &LiveState, demo: &mut DemoState) {
         } else {
             (text::roles::HOLD.get(), text::roles::HOLD_HOVER.get())
         };
-        if ui.add_enabled(plays, Button::new(name).min_size(vec2(64.0, 30.0))).on_hover_text(meaning).clicked() {
+        let hold = ui.add_enabled(plays, Button::new(name).min_size(vec2(64.0, 30.0))).on_hover_text(meaning);
+        if hold.on_disabled_hover_text(text::roles::NOTE_REAL_RIG).clicked() {
             demo.held = !demo.held;
         }
     });

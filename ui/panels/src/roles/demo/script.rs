@@ -14,6 +14,8 @@ pub(super) struct ScriptStep {
     pub(super) delay_s: f64,
     /// Whether the hand releases the handle while it presses, and if so, with or without the governor.
     pub(super) lets_go: Option<GovernorAction>,
+    /// Whether the audience drives the simulated hand.
+    pub(super) is_driven: bool,
     /// Duration, s.
     pub(super) seconds: f64,
 }
@@ -33,6 +35,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Best,
         delay_s: 0.05,
         lets_go: None,
+        is_driven: false,
         seconds: 14.0,
     },
     ScriptStep {
@@ -41,6 +44,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Dfr,
         delay_s: 0.3,
         lets_go: None,
+        is_driven: false,
         seconds: 14.0,
     },
     ScriptStep {
@@ -49,6 +53,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Linear,
         delay_s: 0.3,
         lets_go: None,
+        is_driven: false,
         seconds: 14.0,
     },
     ScriptStep {
@@ -57,6 +62,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Literal,
         delay_s: 0.3,
         lets_go: None,
+        is_driven: false,
         seconds: 14.0,
     },
     ScriptStep {
@@ -65,6 +71,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Anchored,
         delay_s: 0.3,
         lets_go: None,
+        is_driven: false,
         seconds: 14.0,
     },
     ScriptStep {
@@ -73,6 +80,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Matched,
         delay_s: 0.3,
         lets_go: None,
+        is_driven: false,
         seconds: 14.0,
     },
     ScriptStep {
@@ -81,6 +89,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Dfr,
         delay_s: 0.3,
         lets_go: Some(GovernorAction::LeftOut),
+        is_driven: false,
         seconds: 16.0,
     },
     ScriptStep {
@@ -89,6 +98,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Dfr,
         delay_s: 0.3,
         lets_go: Some(GovernorAction::Watches),
+        is_driven: false,
         seconds: 16.0,
     },
     ScriptStep {
@@ -97,6 +107,7 @@ pub(super) const SCRIPT: [ScriptStep; 9] = [
         mode: Mode::Best,
         delay_s: 0.05,
         lets_go: None,
+        is_driven: true,
         seconds: 20.0,
     },
 ];

@@ -192,7 +192,7 @@ pub(super) fn may_play(live: &LiveState) -> bool {
     live.rig.is_harmless() && live.line.is_none()
 }
 
-/// Returns whether the hand is simulated and may therefore release the handle.
+/// Returns whether the hand is simulated, and may therefore release the handle or be driven by mouse.
 fn may_let_go(live: &LiveState) -> bool {
     live.rig.has_simulated_hand()
 }
@@ -203,6 +203,15 @@ fn may_recover(live: &LiveState) -> bool {
 }
 
 /// Returns whether this chapter can be shown on the rig.
-pub(super) fn may_show(live: &LiveState, step: &ScriptStep) -> bool {
-    may_play(live) && (step.lets_go.is_none() || may_let_go(live))
+fn may_show(live: &LiveState, step: &ScriptStep) -> bool {
+    why_not_shown(live, step).is_none()
+}
+
+/// Returns the reason why this chapter cannot be shown on the rig.
+pub(super) fn why_not_shown(live: &LiveState, step: &ScriptStep) -> Option<&'static str> {
+    if !may_play(live) {
+        return Some(text::roles::NOTE_REAL_RIG.get());
+    }
+    let needs_hand = step.lets_go.is_some() || step.is_driven;
+    (needs_hand && !may_let_go(live)).then_some(text::commands::SIMULATED_HAND_ONLY.get())
 }

@@ -9,7 +9,7 @@ use nima_machine::{
 use nima_screen::{live::LiveState, outbox::Outbox};
 use nima_simulation::{SimulationPlan, run_virtual, scene::Scene};
 
-use super::{DemoState, script::SCRIPT};
+use super::{DemoState, script::SCRIPT, state::why_not_shown};
 
 const FAULT: Fault = Fault::SourceSilent;
 const RATE_HZ: f64 = 30.0;
@@ -270,6 +270,23 @@ fn no_other_rig_and_no_fault_from_before_is_released() {
     let mut show = Show::of("simulated");
     show.enters(LoopState::Faulted(FAULT), TransitionCause::Fault);
     assert!(show.frames(60.0).is_empty(), "a technician may be looking at it");
+}
+
+#[test]
+fn chapters_that_need_a_simulated_hand_are_skipped_on_a_rig_with_devices() {
+    let mut show = Show::of("emulated");
+    let mut steps = vec![show.demo.step];
+    // Less than the shortest chapter, for more than a whole round.
+    for _ in 0..150 {
+        show.frames(1.0);
+        if !steps.contains(&show.demo.step) {
+            steps.push(show.demo.step);
+        }
+    }
+    assert_eq!(steps, [0, 1, 2, 3, 4, 5], "neither letting go nor driving by mouse");
+    let your_turn = &SCRIPT[SCRIPT.len() - 1];
+    assert!(why_not_shown(&show.live, your_turn).is_some_and(|why| why.contains("simulated hand")));
+    assert_eq!(why_not_shown(&Show::of("simulated").live, your_turn), None);
 }
 
 #[test]

@@ -24,10 +24,10 @@ use nima_screen::{
     scene3d::side_name,
     steady_button::SteadyButton,
     theme,
-    widgets::{Sign, next_button, sign, small, weak, with_icon},
+    widgets::{Sign, fitting_style, next_button, sign, weak, with_icon},
 };
 use nima_words::{
-    report_text::{cure_of_refusal, refused_because, side_word, state_name},
+    report_text::{cure_of_refusal, refused_because, sentence, side_word, state_name},
     text::{self, current_session::DisplayState, of_files::of_file},
 };
 
@@ -299,24 +299,51 @@ fn step_ui(ui: &mut Ui, state: LoopState, step: TopBarStep, outbox: &mut Outbox)
     }
 }
 
-/// Draws the last refused command, for some seconds.
+/// Text of the last refused command.
+#[derive(Debug)]
+pub(in crate::console) struct DisplayRefusal {
+    what: String,
+    /// The same with the cause.
+    because: String,
+    cure: String,
+}
+
+impl DisplayRefusal {
+    /// Returns the text for some seconds after a refusal.
+    pub(in crate::console) fn of(live: &LiveState) -> Option<Self> {
+        let RefusedCommand { side, command, why } = live.refusal()?;
+        let what = match command {
+            Command::Engage | Command::EngageOne(_) => text::top_bar::NOT_ENGAGED.get(),
+            Command::ReleaseStop => text::top_bar::NOT_RELEASED.get(),
+            _ => text::top_bar::NOT_SET.get(),
+        };
+        let arm = if live.is_bimanual() { side_word(side) } else { "" };
+        let what = text::top_bar::refused(what, arm);
+        // If a device is missing, show the reason from the list of devices.
+        let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
+        let (cause, cure) = match missing {
+            Some(MissingDevice { name, cause, cure, .. }) => (text::top_bar::device(&name, &cause), cure),
+            None => (refused_because(why), cure_of_refusal(why).to_owned()),
+        };
+        let because = text::top_bar::refused_because(&what, &cause);
+        Some(Self { what, because, cure })
+    }
+
+    /// Returns the lines for the alarm strip: command and cause, and the remedy.
+    pub(in crate::console) fn lines(self) -> [String; 2] {
+        [self.because, sentence(&self.cure)]
+    }
+}
+
+/// Draws the last refused command in one line; hovering over it shows cause and remedy. The alarm strip has room for
+/// both, but may be needed for an alarm.
 fn refusal_ui(ui: &mut Ui, live: &LiveState) {
-    let Some(RefusedCommand { side, command, why }) = live.refusal() else { return };
-    let what = match command {
-        Command::Engage | Command::EngageOne(_) => text::top_bar::NOT_ENGAGED.get(),
-        Command::ReleaseStop => text::top_bar::NOT_RELEASED.get(),
-        _ => text::top_bar::NOT_SET.get(),
-    };
-    let arm = if live.is_bimanual() { side_word(side) } else { "" };
-    // If a device is missing, show the reason from the list of devices.
-    let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
-    let words = match missing {
-        Some(MissingDevice { name, cause, cure, .. }) => {
-            text::top_bar::refused(what, arm, &text::top_bar::device(&name, &cause), &cure)
-        }
-        None => text::top_bar::refused(what, arm, &refused_because(why), cure_of_refusal(why)),
-    };
-    ui.add(Label::new(small(words)).wrap());
+    let Some(DisplayRefusal { what, because, cure }) = DisplayRefusal::of(live) else { return };
+    let whole = text::top_bar::refused_with_cure(&because, &cure);
+    let font = fitting_style(ui, &what, &TextStyle::Small, ui.available_width());
+    let response = ui.add(Label::new(weak(what).font(font)).extend());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &whole));
+    response.on_hover_text(whole);
 }
 
 #[cfg(test)]

@@ -107,7 +107,31 @@ fn the_alarm_and_the_stopped_state_fit() {
     press(&mut console, "Stop");
     read(&mut console, "has stopped sending data");
     all.extend(look_at(&mut console, "alarm", Page::Scrolls));
+    drop(console);
+    all.extend(refused(folder.path()));
     none(&all);
+}
+
+/// Returns the faults while a refused command is shown, which is for some seconds only.
+fn refused(folder: &Path) -> Vec<String> {
+    // The wrist sensor of this scene is not calibrated.
+    let mut console = begin("palpation", folder);
+    until(&mut console, "idle", |tick| tick.state == LoopState::Idle);
+    console.state_mut().settings_mut().role = Role::Surgeon;
+    let mut all = Vec::new();
+    for language in LANGUAGES {
+        for size in SIZES {
+            console.set_size(size.into());
+            console.run_steps(30);
+            press(&mut console, "Engage");
+            read(&mut console, "Not engaged: the force at the tip is unknown");
+            console.state_mut().settings_mut().language = language;
+            let found = faults(&mut console, size, Page::of_view(Role::Surgeon));
+            all.extend(found.into_iter().map(|fault| format!("refused {language:?} {size:?}: {fault}")));
+            console.state_mut().settings_mut().language = Language::English;
+        }
+    }
+    all
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Display of alarms: a strip below the top bar, and the list of recent alarms.
 //!
 //! The strip shows the most urgent alarm (the first if several are equal) with time, cause and remedy, and the number of the
-//! others. Without an alarm it shows the next step. Its height never changes: otherwise an alarm would move every control
-//! under the pointer.
+//! others. Without an alarm it shows the last refused command, or the next step. Its height never changes: otherwise an
+//! alarm would move every control under the pointer.
 
 use egui::{
     Button, Color32, Context, FontId, Frame, Label, Margin, Panel, Rect, RichText, ScrollArea, Sense, Stroke,
@@ -36,9 +36,17 @@ pub struct Alarms {
 }
 
 impl Alarms {
-    /// Updates the alarms, plays their sound if enabled, and shows the strip; `loop_s` is the time on the loop's clock, and
-    /// `next` the next step of the operator.
-    pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool, next: &str) {
+    /// Updates the alarms, plays their sound if enabled, and shows the strip; `loop_s` is the time on the loop's clock,
+    /// `next` the next step of the operator, and `refused` a command that was just refused, with the remedy.
+    pub fn strip_ui(
+        &mut self,
+        ui: &mut Ui,
+        signs: &Signs,
+        loop_s: Option<f64>,
+        sounds: bool,
+        next: &str,
+        refused: Option<&[String; 2]>,
+    ) {
         let time_s = ui.input(|input| input.time);
         self.log.update(&judge(signs), &AlarmMoment::now(loop_s, time_s));
         let calls = self.log.calls();
@@ -65,7 +73,7 @@ impl Alarms {
             ui.horizontal_centered(|ui| {
                 match (&first, colour) {
                     (Some(first), Some(colour)) => opened |= words_ui(ui, first, others, colour),
-                    _ => quiet_ui(ui, next),
+                    _ => quiet_ui(ui, next, refused),
                 }
                 at_the_right(ui, |ui| {
                     // Invisible without an alarm, so that its neighbour keeps its place and its identity.
@@ -122,7 +130,7 @@ fn button(ui: &Ui, words: &'static str) -> Button<'static> {
 }
 
 /// Draws the strip without an alarm.
-fn quiet_ui(ui: &mut Ui, next: &str) {
+fn quiet_ui(ui: &mut Ui, next: &str, refused: Option<&[String; 2]>) {
     let (rect, _) = ui.allocate_exact_size(vec2(24.0, 30.0), Sense::hover());
     sign(ui.painter(), Sign::Ring, rect.center(), 6.0, theme::now().text_weak);
     let room = (ui.available_width() - BUTTONS).max(240.0);
@@ -130,12 +138,20 @@ fn quiet_ui(ui: &mut Ui, next: &str) {
         ui.set_width(room);
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = 0.0;
+        let line = |ui: &mut Ui, words: &str, font: FontId, colour: Color32| {
+            let font = fitting(ui.painter(), words, font, room);
+            ui.add(Label::new(RichText::new(words).font(font).color(colour)).truncate());
+        };
+        if let Some([because, cure]) = refused {
+            line(ui, because, theme::strong(14.0), theme::now().text);
+            line(ui, cure, theme::regular(13.0), theme::now().text_weak);
+            return;
+        }
         ui.horizontal(|ui| {
             ui.label(RichText::new(text::top_bar::NIMA_CONSOLE).font(theme::strong(15.0)));
             ui.label(small(text::top_bar::RESEARCH_ONLY));
         });
-        let font = fitting(ui.painter(), next, theme::regular(13.0), room);
-        ui.add(Label::new(RichText::new(next).font(font).color(theme::now().text_weak)).truncate());
+        line(ui, next, theme::regular(13.0), theme::now().text_weak);
     });
 }
 

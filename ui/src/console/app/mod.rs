@@ -60,7 +60,7 @@ use crate::console::{
     screenshots::ScreenshotRun,
     sessions::ConsoleSessions,
     start::StartPage,
-    top_bar::{TopBarState, top_bar_ui},
+    top_bar::{DisplayRefusal, TopBarState, top_bar_ui},
     undo::LookHistory,
 };
 use crate::{
@@ -276,7 +276,9 @@ impl ConsoleApp {
         let signs = self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble());
         let loop_s = self.live.first_tick().map(|tick| tick.t_s);
         let next = text::alarms::next_step(self.live.state(), self.live.engage_closed);
-        self.top_bar.alarms.strip_ui(ui, &signs, loop_s, self.settings.now.sound, &next);
+        let refused = DisplayRefusal::of(&self.live).map(DisplayRefusal::lines);
+        let sounds = self.settings.now.sound;
+        self.top_bar.alarms.strip_ui(ui, &signs, loop_s, sounds, &next, refused.as_ref());
         let written = || judge(&self.live.signs(self.outbox.stop_is_stuck(), self.sessions.trouble()));
         let written = language::with(Language::English, written);
         self.sessions.notify(&self.live.marks_s, &self.top_bar.alarms.log, &written, loop_s);

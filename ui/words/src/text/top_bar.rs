@@ -63,11 +63,21 @@ pub const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht gekoppelt");
 pub const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
 pub const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
-/// Returns the refused command; `arm` is empty for a rig with one arm. The remedy is a separate sentence, because the
-/// remedies of devices begin with a capital.
-pub fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
+/// Returns the refused command; `arm` is empty for a rig with one arm.
+pub fn refused(what: &str, arm: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { text_format!(" ({arm} arm)", " (Arm {arm})") };
-    format!("{what}{arm}: {cause}. {}", sentence(cure))
+    format!("{what}{arm}")
+}
+
+/// Returns the refused command from [`refused`], with the cause.
+pub fn refused_because(what: &str, cause: &str) -> String {
+    format!("{what}: {cause}")
+}
+
+/// Returns the refused command with cause and remedy. The remedy is a separate sentence, because the remedies of
+/// devices begin with a capital.
+pub fn refused_with_cure(because: &str, cure: &str) -> String {
+    format!("{because}. {}", sentence(cure))
 }
 
 pub fn device(name: &str, cause: &str) -> String {

@@ -18,6 +18,7 @@ use super::{
     super::{drawings::progress, frame::WizardRequest, guide::beside, report::verdict_card},
     Binding, CHECK_ROWS, CHECK_WORK, RECORD, TipForceWizard,
     job::{BIN_N, BINS, CheckResult},
+    ready_ui::reason_line,
     take::{drawn, words},
 };
 
@@ -41,8 +42,9 @@ impl TipForceWizard {
                     ui.label(text::tip_force::state(&take.phase_text()));
                 }
             });
+            let may = self.may_check(binding);
             ui.horizontal(|ui| {
-                self.check_button_ui(ui, binding);
+                self.check_button_ui(ui, binding, may);
                 if ui
                     .add(Button::new(text::tip_force::RECORD_MORE).min_size(vec2(130.0, 40.0)))
                     .on_hover_text(text::tip_force::RECORD_MORE_HOVER)
@@ -51,6 +53,7 @@ impl TipForceWizard {
                     wish = Some(WizardRequest::GoTo(RECORD));
                 }
             });
+            reason_line(ui, may);
             let judged = self.judging.is_some() || self.checked.is_some();
             let none = if judged { CHECK_ROWS } else { 0 };
             let rows = self.proof.as_ref().map_or(none, |take| take.recorder.rows());
@@ -79,18 +82,24 @@ impl TipForceWizard {
         }
     }
 
-    fn check_button_ui(&mut self, ui: &mut Ui, binding: &Binding) {
+    /// Checks whether the check can be started or paused; the error is the reason why not.
+    fn may_check(&self, binding: &Binding) -> Result<(), &'static str> {
+        if self.proof.as_ref().is_some_and(|take| take.running) {
+            Ok(())
+        } else if self.judging.is_some() {
+            Err(text::tip_force::CHECK_WAIT.get())
+        } else {
+            self.may_record(binding)
+        }
+    }
+
+    fn check_button_ui(&mut self, ui: &mut Ui, binding: &Binding, may: Result<(), &str>) {
         let running = self.proof.as_ref().is_some_and(|take| take.running);
         let text = match &self.proof {
             Some(_) if running => text::tip_force::PAUSE.get(),
             Some(_) => text::tip_force::CHECK_GO_ON.get(),
             None if self.checked.is_some() => text::tip_force::CHECK_AGAIN.get(),
             None => text::tip_force::CHECK_START.get(),
-        };
-        let may = match running {
-            true => Ok(()),
-            false if self.judging.is_some() => Err(text::tip_force::CHECK_WAIT.get()),
-            false => self.may_record(binding),
         };
         let next = !running && self.checked.is_none();
         let check = SteadyButton { id: Id::unique("check"), label: text, meaning: "", may, waits_s: PATIENT_S };
@@ -103,9 +112,6 @@ impl TipForceWizard {
                 Some(take) if running => take.running = false,
                 _ => self.start_check(binding),
             }
-        }
-        if let Err(reason) = may {
-            ui.label(small(reason));
         }
     }
 }
@@ -228,4 +234,54 @@ fn free_ui(ui: &mut Ui, checked: &CheckResult) {
         });
     let described = text::tip_force::NO_CONTACT_PLOT.get();
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, described));
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Rect;
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    use super::*;
+
+    #[test]
+    fn a_sensor_that_flickers_moves_no_button() {
+        let draw = |ui: &mut Ui, (wizard, binding): &mut (TipForceWizard, Binding)| {
+            if theme::is_applied(ui.ctx()) {
+                wizard.check_ui(ui, binding);
+            }
+        };
+        let shown = (TipForceWizard::default(), Binding::default());
+        let mut window = Harness::builder().with_size([1000.0, 700.0]).build_ui_state(draw, shown);
+        window.run_steps(2);
+        let places = |window: &Harness<'_, (TipForceWizard, Binding)>| -> [Rect; 2] {
+            [text::tip_force::RECORD_MORE, text::tip_force::CHECK_PROGRESS]
+                .map(|words| window.get_by_label_contains(words.get()).rect())
+        };
+        let without = places(&window);
+        // The next reason is shorter or longer.
+        let (wizard, binding) = window.state_mut();
+        wizard.sources[0] = true;
+        "S1-0001".clone_into(&mut binding.sensor);
+        window.run_steps(2);
+        assert!(window.query_by_label_contains("The correspondence is unknown").is_some());
+        assert_eq!(places(&window), without);
+    }
+
+    #[test]
+    fn the_line_of_a_reason_keeps_its_height() {
+        let height = |may: Result<(), &'static str>| {
+            let draw = move |ui: &mut Ui, height: &mut f32| {
+                if theme::is_applied(ui.ctx()) {
+                    let top = ui.cursor().top();
+                    reason_line(ui, may);
+                    *height = ui.cursor().top() - top;
+                }
+            };
+            let mut window = Harness::builder().with_size([400.0, 100.0]).build_ui_state(draw, 0.0);
+            window.run_steps(2);
+            *window.state()
+        };
+        let [empty, full] = [Ok(()), Err("a device is missing")].map(height);
+        assert!((empty - full).abs() < 1.0 && empty > 8.0, "{empty} and {full} points");
+    }
 }

@@ -1,8 +1,8 @@
 //! First page of the wizard: the sources required for a recording, with remedies for missing ones.
 
-use egui::Ui;
+use egui::{TextStyle, Ui, vec2};
 use nima_machine::messages::Tick;
-use nima_screen::widgets::card;
+use nima_screen::widgets::{card, small};
 use nima_words::{language::Text, text};
 
 use super::{
@@ -31,6 +31,20 @@ pub(super) fn sources(tick: &Tick) -> ReadySources {
         let gravity = tick.force.gravity_free.is_some();
         [true, gravity, sample.tissue_n.is_some(), sample.s1_from_c().is_some(), sample.insertion_m.is_some()]
     })
+}
+
+/// Draws the reason why the controls above are disabled. Without a reason the line is empty: nothing may move while a
+/// sensor is lost for a moment.
+pub(super) fn reason_line(ui: &mut Ui, may: Result<(), &str>) {
+    match may {
+        Ok(()) => {
+            let height = ui.text_style_height(&TextStyle::Small);
+            ui.allocate_space(vec2(1.0, height));
+        }
+        Err(reason) => {
+            ui.label(small(reason));
+        }
+    }
 }
 
 impl TipForceWizard {

@@ -7,7 +7,7 @@ use nima_recording::tip_force::ROW_EVERY_S;
 use nima_screen::{
     steady_button::{PATIENT_S, SteadyButton},
     theme,
-    widgets::{card, next_button, small},
+    widgets::{card, next_button},
 };
 use nima_training::MIN_ROWS;
 use nima_words::{
@@ -22,6 +22,7 @@ use super::{
         guide::beside,
     },
     Binding, TRAIN, TipForceWizard,
+    ready_ui::reason_line,
     take::{drawn, words},
 };
 
@@ -38,8 +39,9 @@ impl TipForceWizard {
         card(ui, text::tip_force::RECORD_TITLE, meaning, |ui| {
             beside(ui, &drawn(self.recording.as_ref()), None, |ui| self.now_ui(ui));
             ui.add_space(4.0);
+            let may = if running { Ok(()) } else { self.may_record(binding) };
             ui.horizontal(|ui| {
-                if self.start_ui(ui, running, rows, binding) {
+                if self.start_ui(ui, running, rows, may) {
                     self.toggle(running, binding);
                 }
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -52,6 +54,7 @@ impl TipForceWizard {
                     }
                 });
             });
+            reason_line(ui, may);
             let seconds = rows as f64 * ROW_EVERY_S;
             let report = text::tip_force::rows_and_seconds(rows, seconds, PAPER_ROWS, PAPER_ROWS as f64 * ROW_EVERY_S);
             progress(ui, text::tip_force::ROWS.get(), rows as f64 / PAPER_ROWS as f64, &report);
@@ -90,23 +93,18 @@ impl TipForceWizard {
     }
 
     /// Draws the start button; returns true when it is pressed.
-    fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, binding: &Binding) -> bool {
+    fn start_ui(&self, ui: &mut Ui, running: bool, rows: usize, may: Result<(), &str>) -> bool {
         let text = match (running, rows) {
             (true, _) => text::tip_force::PAUSE.get(),
             (false, 0) => text::tip_force::RECORD_START.get(),
             (false, _) => text::tip_force::RECORD_GO_ON.get(),
         };
-        let may = if running { Ok(()) } else { self.may_record(binding) };
         let next = !running && !self.is_done();
         let start = SteadyButton { id: Id::unique("record"), label: text, meaning: "", may, waits_s: PATIENT_S };
-        let wanted = start.ui(ui, |text, enabled| {
+        start.ui(ui, |text, enabled| {
             let label = RichText::new(text).font(theme::strong(17.0));
             next_button(label, next && enabled).min_size(vec2(220.0, 48.0))
-        });
-        if let Err(reason) = may {
-            ui.label(small(reason));
-        }
-        wanted
+        })
     }
 
     fn toggle(&mut self, running: bool, binding: &Binding) {

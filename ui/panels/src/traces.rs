@@ -231,7 +231,7 @@ fn switches_ui(ui: &mut Ui, live: &mut LiveState, state: &mut TracesState, choos
         }
     }
     let mark = ui.add_enabled(!live.is_shown_only(), Button::new(text::traces::MARK).min_size(size));
-    if mark.on_hover_text(text::traces::MARK_HOVER).clicked() {
+    if mark.on_hover_text(text::traces::MARK_HOVER).on_disabled_hover_text(live.of.blocked()).clicked() {
         live.mark();
     }
     let paused = state.is_paused();

@@ -119,7 +119,10 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
     let ctx = ui.ctx().clone();
     let name = if past.play.runs { text::playback::PAUSE.get() } else { text::playback::PLAY.get() };
     let play = Button::new(RichText::new(name).font(theme::strong(14.0))).min_size(vec2(70.0, BUTTON));
-    if ui.add_enabled(past.live.is_some(), play).on_hover_text(text::playback::PLAY_HOVER).clicked() {
+    let play = ui.add_enabled(past.live.is_some(), play).on_hover_text(text::playback::PLAY_HOVER);
+    let blocked = past.blocked();
+    let blocked = blocked.as_deref();
+    if play.on_disabled_hover_text(blocked.unwrap_or(text::playback::OPENING.get())).clicked() {
         past.toggle();
     }
     ui.scope(|ui| {
@@ -132,8 +135,6 @@ fn buttons_ui(ui: &mut Ui, past: &mut Playback) {
             }
         }
     });
-    let blocked = past.blocked();
-    let blocked = blocked.as_deref();
     let end_s = past.about.map_or(0.0, |about| about.end_s);
     ui.add_space(6.0);
     let place = RichText::new(text::playback::position(past.shown_s(), end_s)).font(theme::strong(15.0));

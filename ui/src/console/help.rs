@@ -6,8 +6,8 @@ use nima_screen::theme;
 use nima_words::text::{
     commands::{BY_HAND, key_meaning},
     help::{
-        BEGIN, GLOSSARY, GLOSSARY_WINDOW, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR, TOUR_WINDOW,
-        WORDS_HEADING, step_of,
+        BEGIN, FIRST_STEP, GLOSSARY, GLOSSARY_WINDOW, KEYS_HEADING, NEXT_STEP, SKIP_THE_TOUR, STEP_BACK, TOUR,
+        TOUR_WINDOW, WORDS_HEADING, step_of,
     },
 };
 
@@ -60,7 +60,8 @@ impl Help {
                     vec2(48.0, size.y),
                     Label::new(nima_screen::widgets::small(step_of(step + 1, TOUR.len()))),
                 );
-                if ui.add_enabled(step > 0, Button::new(STEP_BACK).min_size(size)).clicked() {
+                let back = ui.add_enabled(step > 0, Button::new(STEP_BACK).min_size(size));
+                if back.on_disabled_hover_text(FIRST_STEP).clicked() {
                     self.tour = Some(step - 1);
                 }
                 let last = step + 1 == TOUR.len();

@@ -103,8 +103,9 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
     });
     wanted = wanted.or(entry_ui(ui, Action::Palette, 300.0));
     ui.horizontal(|ui| {
-        for (action, can) in [Action::Undo, Action::Redo].into_iter().zip(can_undo) {
-            wanted = wanted.or(ui.add_enabled_ui(can, |ui| entry_ui(ui, action, 0.0)).inner);
+        let nothing = [text::commands::NOTHING_TO_UNDO, text::commands::NOTHING_TO_REDO];
+        for ((action, why), can) in [Action::Undo, Action::Redo].into_iter().zip(nothing).zip(can_undo) {
+            wanted = wanted.or(entry_unless_ui(ui, action, 0.0, (!can).then_some(why)));
         }
     });
     wanted = wanted.or(entry_ui(ui, Action::Mark, 300.0));
@@ -113,9 +114,15 @@ fn content_ui(ui: &mut Ui, settings: &mut ConsoleSettings, alarms: &mut Alarms, 
 
 /// Draws a command with its keys, on a button of at least this width; returns the command when pressed.
 fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
+    entry_unless_ui(ui, action, width, None)
+}
+
+/// Like [`entry_ui`], disabled for this reason if there is one.
+fn entry_unless_ui(ui: &mut Ui, action: Action, width: f32, closed: Option<Text>) -> Option<Action> {
     let entry = CommandEntry::of(action)?;
-    let button = ui.add(Button::new(entry.with_keys()).min_size(vec2(width, 30.0)));
-    button.on_hover_text(entry.does).clicked().then_some(action)
+    let button = Button::new(entry.with_keys()).min_size(vec2(width, 30.0));
+    let button = ui.add_enabled(closed.is_none(), button).on_hover_text(entry.does);
+    button.on_disabled_hover_text(closed.map_or("", Text::get)).clicked().then_some(action)
 }
 
 /// Draws the languages by their own names; returns the command of the pressed one.
@@ -173,7 +180,7 @@ fn image_ui(ui: &mut Ui, settings: &mut ConsoleSettings) -> Option<Action> {
     let forces = switch_ui(ui, image.forces_of_now, Action::ForcesOfNow);
     let plain = ImageSettings { forces_of_now: image.forces_of_now, ..ImageSettings::default() };
     let is_plain = *image == plain;
-    let plain = ui.add_enabled_ui(!is_plain, |ui| entry_ui(ui, Action::PlainPicture, 300.0)).inner;
+    let plain = entry_unless_ui(ui, Action::PlainPicture, 300.0, is_plain.then_some(text::commands::IS_PLAIN));
     forces.or(plain).or(switch_ui(ui, settings.records_image, Action::RecordsPicture))
 }
 

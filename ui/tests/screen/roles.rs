@@ -6,7 +6,10 @@ use nima_console::console::ConsoleOptions;
 use nima_machine::messages::LoopState;
 use nima_panels::{roles::Role, settings::SettingsStore};
 
-use crate::bench::{console_of, press, shows, until};
+use crate::{
+    bench::{can_press, console_of, press, read, shows, until},
+    playback,
+};
 
 const SIZE: [f32; 2] = [1280.0, 720.0];
 
@@ -38,6 +41,34 @@ fn the_button_of_the_present_view_leads_back_to_it() {
     harness.get_by_label_contains("Choose a scene");
     press(&mut harness, "Technician");
     assert!(!shows(&harness, "Choose a scene"));
+}
+
+#[test]
+fn the_gain_of_a_recorded_session_says_why_it_cannot_be_set() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("session.mcap");
+    playback::record(&path, "peg_transfer", "2");
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_session(&path));
+    playback::until_whole(&mut harness);
+    harness.state_mut().settings_mut().role = Role::Surgeon;
+    harness.run_steps(3);
+    assert!(!can_press(&harness, "Raise the gain"));
+    let place = harness.get_by_role_and_label(accesskit::Role::Button, "Raise the gain").rect();
+    harness.hover_at(place.center());
+    read(&mut harness, "Not during playback: press L first");
+}
+
+#[test]
+fn the_first_step_of_the_tour_says_why_there_is_no_step_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = SettingsStore::open(folder.path());
+    let mut harness = console_of("peg_transfer", SIZE, move |app| app.with_settings(settings));
+    press(&mut harness, "Continue with the simulated rig");
+    harness.run_steps(3);
+    assert!(!can_press(&harness, "Step back"));
+    let place = harness.get_by_role_and_label(accesskit::Role::Button, "Step back").rect();
+    harness.hover_at(place.center());
+    read(&mut harness, "This is the first step");
 }
 
 #[test]

@@ -101,7 +101,8 @@ fn look_ui(ui: &mut Ui, live: &LiveState, chooser: &mut Chooser) {
         let field = TextEdit::singleline(place).hint_text(text::devices::PLACE).desired_width(ui.available_width());
         let field = ui.add(field).on_hover_text(text::devices::PLACE_HOVER);
         field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, text::devices::PLACE.get()));
-        if button.on_hover_text(text::devices::LOOK_HOVER).clicked()
+        let button = button.on_hover_text(text::devices::LOOK_HOVER);
+        if button.on_disabled_hover_text(text::devices::LOOKS_NOW).clicked()
             && let Some(devices) = live.rig.devices.clone()
         {
             let part = *part;

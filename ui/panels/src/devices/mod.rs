@@ -261,7 +261,8 @@ fn head_ui(ui: &mut Ui, live: &LiveState, state: &mut DevicesState, refused: Opt
         let parts: Vec<_> = (0..live.roster.len()).filter(|place| live.roster[*place].part.is_some()).collect();
         let button = Button::new(RichText::new(text::devices::TEST_ALL)).min_size(vec2(84.0, 26.0));
         let button = ui.add_enabled(!state.is_testing() && !parts.is_empty(), button);
-        if button.on_hover_text(text::devices::TEST_HOVER).clicked() {
+        let why = if parts.is_empty() { text::devices::NOTHING_TO_TEST } else { text::devices::TEST_RUNS };
+        if button.on_hover_text(text::devices::TEST_HOVER).on_disabled_hover_text(why).clicked() {
             state.begin_test(parts, live);
         }
         if !kinds.is_empty() {

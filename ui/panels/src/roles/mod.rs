@@ -6,7 +6,7 @@ pub mod demo;
 mod surgeon;
 mod technician;
 
-use egui::{Button, Key, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{Button, InnerResponse, Key, TextStyle, Ui, WidgetInfo, vec2};
 use egui_material_icons::icons;
 use nima_machine::config::RigConfig;
 use nima_screen::{
@@ -158,9 +158,11 @@ pub fn role_ui(
     }
 }
 
-/// Draws controls that act on the machine: disabled during playback.
-fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.add_enabled_ui(!past, controls).inner
+/// Draws controls that act on the machine: disabled, with the reason on hover, if nothing may act on it.
+fn acts<R>(ui: &mut Ui, live: &LiveState, controls: impl FnOnce(&mut Ui) -> R) -> R {
+    let InnerResponse { inner, response } = ui.add_enabled_ui(!live.is_shown_only(), controls);
+    response.on_disabled_hover_text(live.of.blocked());
+    inner
 }
 
 /// Draws one button for each of these roles; returns the pressed one, also if it is the present one: it then leads back to

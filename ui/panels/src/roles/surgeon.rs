@@ -27,7 +27,6 @@ const GAIN_WIDTH: f32 = 330.0;
 const BEYOND_CEILING: f64 = 1.25;
 
 pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels, outbox: &mut Outbox) {
-    let past = live.is_shown_only();
     let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     Panel::bottom("strip").exact_size(STRIP).resizable(false).frame(strip).show(ui, |ui| {
         let room = ui.available_rect_before_wrap();
@@ -43,7 +42,7 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut LiveState, panels: &mut Panels,
         ui.scope_builder(egui::UiBuilder::new().max_rect(gain), |ui| {
             theme::card().show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
-                acts(ui, past, |ui| {
+                acts(ui, live, |ui| {
                     calm_gain_ui(ui, live, &mut panels.feedback, outbox);
                     modes_ui(ui, live, outbox);
                 });

@@ -69,7 +69,8 @@ impl StartPage {
         let checking = self.answers.is_running();
         let button = Button::new(if checking { text::start::CHECKING.get() } else { text::start::CHECK.get() });
         let button = ui.add_enabled(!checking, button.min_size(vec2(ui.available_width(), 32.0)));
-        if button.on_hover_text(text::start::CHECK_HOVER).clicked() {
+        let button = button.on_hover_text(text::start::CHECK_HOVER);
+        if button.on_disabled_hover_text(text::start::CHECK_RUNS).clicked() {
             let ctx = ui.ctx().clone();
             looking::check(&mut self.answers, &ctx, rig);
         }

@@ -110,7 +110,8 @@ impl EndoscopeCard {
         let words =
             if address.is_empty() { text::start::ENDOSCOPE_REMOVE.get() } else { text::start::ENDOSCOPE_USE.get() };
         let button = ui.add_enabled(address != before, Button::new(words).min_size(vec2(width, 32.0)));
-        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER).clicked()
+        let why = if address.is_empty() { text::start::ADDRESS_FIRST } else { text::start::ENDOSCOPE_SAME };
+        button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER).on_disabled_hover_text(why).clicked()
     }
 
     /// Tries the typed address after the last key press.

@@ -19,7 +19,10 @@ use nima_screen::{
     theme,
     widgets::{card, next_button, small, weak},
 };
-use nima_words::text::{self, of_files::of_file};
+use nima_words::{
+    language::Text,
+    text::{self, of_files::of_file},
+};
 
 use addresses::ExampleAddresses;
 pub(crate) use choices::drawn_anew;
@@ -160,11 +163,12 @@ impl StartPage {
             let place = place.translate(vec2(-theme::STOP_SIZE.x - theme::GAP, 0.0));
             let page = Button::new(name).wrap();
             let page = ui.add_enabled_ui(!now.is_starting, |ui| ui.put(place, page)).inner;
-            wants_page = page.on_hover_text(meaning).clicked();
+            wants_page = page.on_hover_text(meaning).on_disabled_hover_text(text::commands::IS_STARTING).clicked();
         }
         let button = Button::new(text::start::ELSEWHERE);
         let button = ui.add_enabled_ui(self.picking.is_none(), |ui| ui.put(place, button)).inner;
-        if button.on_hover_text(text::start::ELSEWHERE_HOVER).clicked() {
+        let button = button.on_hover_text(text::start::ELSEWHERE_HOVER);
+        if button.on_disabled_hover_text(text::start::ELSEWHERE_IS_OPEN).clicked() {
             let kind = Kind { name: text::start::RIG_FILES.get(), endings: &["toml"] };
             let folder = self.folder.as_deref();
             self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
@@ -260,22 +264,34 @@ impl StartPage {
         self.endoscope.close();
     }
 
+    /// Returns the reason why the chosen rig and scene cannot be started now.
+    fn why_not_started(&self, now: &StartInputs<'_>) -> Option<Text> {
+        let usable = |list: &[ChoiceEntry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
+        let is_usable = usable(&self.lists.rigs, &self.chosen.rig) && usable(&self.lists.scenes, &self.chosen.scene);
+        if now.is_starting {
+            Some(text::commands::IS_STARTING)
+        } else if now.live.state() == LoopState::Engaged && is_real(&now.live.rig) {
+            Some(text::start::ENGAGED)
+        } else {
+            (!is_usable).then_some(text::start::UNUSABLE)
+        }
+    }
+
     fn foot_ui(&mut self, ui: &mut Ui, now: &StartInputs<'_>) -> Option<StartRequest> {
         let mut request = None;
         ui.horizontal(|ui| {
-            let held = now.live.state() == LoopState::Engaged && is_real(&now.live.rig);
             let same = self.chosen == *now.running;
-            let usable = |list: &[ChoiceEntry], key: &str| list.iter().any(|entry| entry.key == key && entry.usable);
-            let ready = usable(&self.lists.rigs, &self.chosen.rig) && usable(&self.lists.scenes, &self.chosen.scene);
+            let why = self.why_not_started(now);
             let words = if same { text::start::START_AGAIN.get() } else { text::start::START.get() };
             let name = RichText::new(words).font(theme::strong(17.0));
             let button = next_button(name, !same).min_size(theme::STOP_SIZE);
-            let button = ui.add_enabled(ready && !held && !now.is_starting, button);
-            if button.on_hover_text(text::start::START_HOVER).on_disabled_hover_text(text::start::ENGAGED).clicked() {
+            let button = ui.add_enabled(why.is_none(), button).on_hover_text(text::start::START_HOVER);
+            if button.on_disabled_hover_text(why.map_or("", Text::get)).clicked() {
                 request = Some(StartRequest::Start(self.chosen.clone()));
             }
             let back = Button::new(text::start::BACK).min_size(theme::STOP_SIZE);
-            if ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER).clicked() {
+            let back = ui.add_enabled(!now.is_starting, back).on_hover_text(text::start::BACK_HOVER);
+            if back.on_disabled_hover_text(text::commands::IS_STARTING).clicked() {
                 request = Some(StartRequest::Leave);
             }
             ui.vertical(|ui| {
@@ -326,4 +342,29 @@ fn entry_ui(ui: &mut Ui, entry: &ChoiceEntry, chosen: bool, running: bool) -> bo
     ui.add(Label::new(small(words)).wrap());
     ui.add_space(4.0);
     clicked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_start_says_what_is_missing() {
+        let plan = nima_tests::plan("peg_transfer");
+        let live = LiveState::new(plan.rig, plan.scene);
+        let running = RigChoice::default();
+        let now = |is_starting| StartInputs {
+            live: &live,
+            running: &running,
+            recent: &[],
+            is_starting,
+            image: None,
+            page: None,
+        };
+        let mut page = StartPage::new(running.clone());
+        assert_eq!(page.why_not_started(&now(false)), Some(text::start::UNUSABLE), "in no list");
+        page.open(&running, &[]);
+        assert_eq!(page.why_not_started(&now(false)), None);
+        assert_eq!(page.why_not_started(&now(true)), Some(text::commands::IS_STARTING));
+    }
 }

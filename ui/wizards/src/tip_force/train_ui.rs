@@ -68,8 +68,8 @@ impl TipForceWizard {
                 let chosen = self.size == size;
                 let words = format!("{} ({hidden})", size.name());
                 let response = ui.add_enabled(!training, Button::selectable(chosen, words));
-                let meaning = text::tip_force::SIZE_HOVER.get();
-                if response.on_hover_text(meaning).clicked() {
+                let response = response.on_hover_text(text::tip_force::SIZE_HOVER);
+                if response.on_disabled_hover_text(text::tip_force::NEEDS_TRAINING_END).clicked() {
                     self.size = size;
                 }
             }

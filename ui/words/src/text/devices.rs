@@ -41,6 +41,8 @@ pub const COPY_HOVER: Text = Text::of(
     "Copies address, identity, state, figures, cause and remedy, for example for an e-mail",
     "Kopiert Adresse, Kennung, Zustand, Zahlen, Grund und Abhilfe, etwa für eine E-Mail",
 );
+pub const NOTHING_TO_TEST: Text =
+    Text::of("This rig has no devices to test", "Dieser Aufbau hat keine Geräte zum Testen");
 pub const TEST_RUNS: Text = Text::of("A test is running", "Ein Test läuft");
 pub const CONNECTED: Text = Text::of("connected", "verbunden");
 pub const LOST: Text = Text::of("lost", "ausgefallen");
@@ -70,6 +72,7 @@ pub const LOOK_HOVER: Text = Text::of(
     "Fragt jeden freien Port und jedes USB-Gerät dieser Art nach seiner Kennung; dauert etwa eine Sekunde",
 );
 pub const LOOKING: Text = Text::of("searching", "sucht");
+pub const LOOKS_NOW: Text = Text::of("The search is running", "Die Suche läuft");
 pub const PLACE: Text = Text::of("Address or port", "Adresse oder Port");
 pub const PLACE_HOVER: Text = Text::of(
     "Where to search in addition to USB: a network address such as 192.168.1.10, or a port such as /dev/ttyUSB3. \

@@ -3,6 +3,7 @@
 use crate::language::{Text, text_format};
 
 pub const STEP_BACK: Text = Text::of("Step back", "Schritt zurück");
+pub const FIRST_STEP: Text = Text::of("This is the first step", "Dies ist der erste Schritt");
 pub const NEXT_STEP: Text = Text::of("Next step", "Nächster Schritt");
 pub const BEGIN: Text = Text::of("Start", "Beginnen");
 pub const SKIP_THE_TOUR: Text = Text::of("Skip tour", "Überspringen");

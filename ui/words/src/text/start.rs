@@ -42,6 +42,8 @@ pub const YOURS: Text = Text::of("Yours", "Eigene");
 pub const ELSEWHERE: Text = Text::of("Open file…", "Datei öffnen…");
 pub const ELSEWHERE_HOVER: Text =
     Text::of("Chooses a rig file from any folder", "Wählt eine Aufbaudatei aus einem beliebigen Ordner");
+pub const ELSEWHERE_IS_OPEN: Text =
+    Text::of("The dialog to choose a file is already open", "Der Dialog zum Wählen einer Datei ist schon offen");
 /// The kind of file in the system's dialog.
 pub const RIG_FILES: Text = Text::of("Rig files", "Aufbaudateien");
 pub const NEW_NAME: Text = Text::of("Name of a new rig", "Name des neuen Aufbaus");
@@ -71,6 +73,7 @@ pub const BACK_HOVER: Text = Text::of("Back to the view; nothing changes", "Zur�
 pub const CHECK: Text = Text::of("Check the devices", "Geräte prüfen");
 pub const CHECK_HOVER: Text =
     Text::of("Opens each device briefly; takes about a second", "Öffnet jedes Gerät kurz; dauert etwa eine Sekunde");
+pub const CHECK_RUNS: Text = Text::of("The check is running", "Die Prüfung läuft");
 pub const CHECKING: Text = Text::of("Checking the devices", "Geräte werden geprüft");
 pub const SIMULATED: Text =
     Text::of("Everything is simulated: nothing needs to be plugged in", "Alles simuliert: nichts anzuschließen");
@@ -88,6 +91,10 @@ pub const NOTHING_PLUGGED: Text = Text::of("No usable device found", "Kein nutzb
 pub const STARTING: Text = Text::of("Starting", "Startet");
 pub const ENGAGED: Text =
     Text::of("Press Stop first: this rig is engaged", "Erst Halt drücken: dieser Aufbau ist gekoppelt");
+pub const UNUSABLE: Text = Text::of(
+    "This rig or this scene cannot be used: the list shows the cause",
+    "Dieser Aufbau oder diese Szene ist nicht nutzbar: der Grund steht in der Liste",
+);
 pub const ALL_THERE: Text = Text::of("All devices respond", "Alle Geräte antworten");
 pub const NO_THREAD: Text = Text::of(
     "the system cannot start a thread for the emulators",
@@ -142,6 +149,7 @@ pub const ENDOSCOPE_ADDRESS: Text = Text::of("Address of the endoscope", "Adress
 pub const ENDOSCOPE_HINT: Text = Text::of("http://192.168.10.7:8080/stream", "http://192.168.10.7:8080/stream");
 pub const ENDOSCOPE_USE: Text = Text::of("Write this address to the rig", "Adresse in den Aufbau schreiben");
 pub const ENDOSCOPE_REMOVE: Text = Text::of("Remove the endoscope from the rig", "Endoskop aus dem Aufbau entfernen");
+pub const ENDOSCOPE_SAME: Text = Text::of("The rig already has this address", "Der Aufbau hat diese Adresse schon");
 pub const ENDOSCOPE_USE_HOVER: Text = Text::of(
     "A built-in rig stays unchanged: the address is written to your copy of it. Start the rig to see the image \
      in the Surgeon view.",

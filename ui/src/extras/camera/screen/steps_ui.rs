@@ -38,12 +38,14 @@ impl CameraWizard {
             ui.horizontal(|ui| {
                 let label = ui.label(texts::CORNERS);
                 let edit = TextEdit::singleline(&mut self.corners).desired_width(60.0).char_limit(7);
-                ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER);
+                let edit = ui.add_enabled(free, edit).labelled_by(label.id).on_hover_text(texts::CORNERS_HOVER);
+                edit.on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER);
                 ui.add_space(16.0);
                 let label = ui.label(texts::SQUARE);
                 let [min_mm, max_mm] = [SQUARE_M.start(), SQUARE_M.end()].map(|side_m| side_m * 1e3);
                 let drag = DragValue::new(&mut self.square_mm).range(min_mm..=max_mm).speed(0.1).suffix(" mm");
-                ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER);
+                let drag = ui.add_enabled(free, drag).labelled_by(label.id).on_hover_text(texts::SQUARE_HOVER);
+                drag.on_disabled_hover_text(text::wizards::SWITCH_DISABLED_HOVER);
             });
             match self.board() {
                 Ok(_) => ui.label(small(texts::PRINT)),

@@ -26,8 +26,10 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(&folder.path().join("calibrations"));
     until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
-    press(&mut console, "Ready check…");
+    pick(&mut console, "Set-up…");
+    pick(&mut console, "Run Right arm, ready check");
     read(&mut console, "Checked by");
+    read(&mut console, "not engaged. Not during the ready check");
     read(&mut console, "Devices present and steady: skipped, this rig is simulated");
     // The simulated person obeys the instructions at the arm; the stop is pressed here.
     read(&mut console, "Press Stop");
@@ -48,7 +50,7 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
     assert!(record.passed && record.items.iter().all(|item| item.outcome != PointOutcome::Failed), "{record:?}");
     press(&mut console, "Continue to Engage");
-    assert!(!shows(&console, "Checked by"));
+    assert!(!shows(&console, "Checked by") && !shows(&console, "Back to the monitor"), "Engage is at the monitor");
 }
 
 #[test]

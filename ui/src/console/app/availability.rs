@@ -75,6 +75,7 @@ impl ConsoleApp {
                 Some(text::commands::IS_ENGAGED.get())
             }
             _ if self.shown.is_past() => Some(text::playback::BLOCKED.get()),
+            (Action::Engage, _) if matches!(self.shown, ShownPage::Check(_)) => Some(text::ready::ENGAGE_CLOSED.get()),
             (Action::Engage, _) if self.is_calibrating() => Some(text::start::OPEN_DISABLED_HOVER.get()),
             _ => None,
         };

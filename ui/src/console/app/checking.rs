@@ -14,7 +14,10 @@ use nima_simulation::scene::Scene;
 use nima_wizards::ready::{ReadyRequest, ReadyRun, devices_of, ready_ui, record, subject};
 use nima_words::{report_text::chain, text};
 
-use super::{ConsoleApp, shown_page::ShownPage};
+use super::{
+    ConsoleApp,
+    shown_page::{ShownPage, WayBack},
+};
 
 /// The scene with a simulated person at the arm.
 const SCENE: &str = "correspondence";
@@ -179,6 +182,8 @@ impl ConsoleApp {
             Some(ReadyRequest::Whole) => self.checking.begin_anew(),
             Some(ReadyRequest::Close) => {
                 self.top_bar.leads_to_engage = true;
+                // From the set-up page too: its button leads to Engage, which is at the monitor.
+                self.way_back = WayBack::Monitor;
                 wish = Some(CalibrationWish::Close);
             }
             None => {}

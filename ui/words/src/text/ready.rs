@@ -19,6 +19,11 @@ pub const FAILED: Text = Text::of("Not ready: see the failed checks", "Nicht ber
 pub const CLOSE: Text = Text::of("Continue to Engage", "Weiter zum Koppeln");
 pub const CLOSE_HOVER: Text =
     Text::of("Returns to the monitor, where Engage is highlighted", "Zurück zum Monitor, wo Koppeln hervorgehoben ist");
+/// Reason why nothing can be engaged meanwhile.
+pub const ENGAGE_CLOSED: Text = Text::of(
+    "Not during the ready check: finish it or close it first",
+    "Nicht während der Startprüfung: erst beenden oder schließen",
+);
 pub const AGAIN: Text = Text::of("Repeat failed checks", "Fehlerhafte Punkte wiederholen");
 pub const AGAIN_HOVER: Text = Text::of("Passed checks keep their results", "Bestandene Punkte behalten ihr Ergebnis");
 pub const WHOLE: Text = Text::of("Repeat all checks", "Alle Punkte wiederholen");

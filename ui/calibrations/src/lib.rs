@@ -41,6 +41,8 @@ pub struct Binding {
     pub subject: Option<FrameSubject>,
     /// Name or path of the rig.
     pub rig: String,
+    /// The rig has an endoscope, whose image the console shows.
+    pub has_image: bool,
 }
 
 impl Binding {

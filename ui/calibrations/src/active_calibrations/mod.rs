@@ -216,13 +216,13 @@ impl ActiveCalibrations {
             of_side.wrist().map(|wrist| (wrist.serial_number.clone(), wrist.tool.clone())).unwrap_or_default();
         let correspondence = of_side.correspondence.as_ref().map(|loaded| loaded.record.correspondence());
         let store = self.store.clone();
-        Binding { sensor, tool, date: utc_now(), correspondence, store, subject: None, rig: String::new() }
+        Binding { sensor, tool, date: utc_now(), correspondence, store, ..Binding::default() }
     }
 
     /// Like [`ActiveCalibrations::binding`], for the arm of this rig, with this name and these devices.
     pub fn binding_of(&self, name: &str, rig: &RigConfig, roster: &Roster) -> Binding {
         let subject = FrameSubject::of(rig, self.side, roster);
-        Binding { subject, rig: name.to_owned(), ..self.binding() }
+        Binding { subject, rig: name.to_owned(), has_image: rig.endoscope.is_some(), ..self.binding() }
     }
 
     /// Saves a frame calibration: its record and changes into the store, and the values into the rig file of this name, or

@@ -202,6 +202,11 @@ impl FrameWizard {
         self.job.as_ref()?.needs().into_iter().find(|source| !has(source))
     }
 
+    /// Returns whether the person can follow the instructions: a view is found by looking at the endoscope image.
+    fn has_image(&self, binding: &Binding) -> bool {
+        self.kind != FrameKind::View || binding.has_image
+    }
+
     fn result_ui(&self, ui: &mut Ui) {
         let otherwise = [texts::NO_RESULT_HOVER.get(), texts::TOO_FEW.get()];
         let Some(subject) = &self.subject else { return };
@@ -272,9 +277,10 @@ impl Wizard for FrameWizard {
         self.kind.prompt(self.other_way, self.taken(), || self.target())
     }
 
-    fn may_go_on(&self, _: &Binding) -> Result<(), &'static str> {
+    fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str> {
         match self.frame.step {
             CHECK if self.job.is_none() => Err(texts::NEEDS_ARM.get()),
+            CHECK if !self.has_image(binding) => Err(text::wizards::NEEDS_CHECKS.get()),
             CHECK => self.lacks().map_or(Ok(()), |_| Err(text::wizards::NEEDS_CHECKS.get())),
             RECORD if self.taken() >= 3 => Ok(()),
             RECORD => Err(texts::NEEDS_MORE.get()),
@@ -288,9 +294,9 @@ impl Wizard for FrameWizard {
         self.frame.step != RECORD || self.is_complete()
     }
 
-    fn step_ui(&mut self, ui: &mut Ui, _: &Binding) -> Option<WizardRequest> {
+    fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<WizardRequest> {
         match self.frame.step {
-            CHECK => self.check_ui(ui),
+            CHECK => self.check_ui(ui, binding),
             RECORD => self.record_ui(ui),
             _ => self.result_ui(ui),
         }

@@ -13,7 +13,10 @@ use nima_words::{
     text::{self, frames as texts},
 };
 
-use nima_calibrations::frames::{FrameKind, kind::Texts};
+use nima_calibrations::{
+    Binding,
+    frames::{FrameKind, kind::Texts},
+};
 
 use super::FrameWizard;
 use crate::{
@@ -24,7 +27,7 @@ use crate::{
 };
 
 impl FrameWizard {
-    pub(super) fn check_ui(&mut self, ui: &mut Ui) {
+    pub(super) fn check_ui(&mut self, ui: &mut Ui, binding: &Binding) {
         card(ui, texts::CHECKS_TITLE, texts::CHECKS_HOVER, |ui| {
             let Some(job) = &self.job else {
                 ui.label(texts::NO_ARM);
@@ -32,7 +35,12 @@ impl FrameWizard {
             };
             let drawn = self.drawn();
             let needs = job.needs();
-            beside(ui, &drawn, None, |ui| self.needs_ui(ui, &needs));
+            beside(ui, &drawn, None, |ui| {
+                self.needs_ui(ui, &needs);
+                if self.kind == FrameKind::View {
+                    check_line(ui, texts::CHECK_IMAGE.get(), self.has_image(binding), texts::NO_IMAGE.get());
+                }
+            });
         });
         let (Some([name, meaning]), Some(subject)) = (self.texts().other_way, self.subject.clone()) else { return };
         card(ui, texts::OPTIONS_TITLE, texts::OPTIONS_HOVER, |ui| {

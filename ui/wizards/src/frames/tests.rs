@@ -109,6 +109,16 @@ fn pivoting(tip_m: Vector3<f64>, i: u32) -> FrameSample {
 }
 
 #[test]
+fn a_view_needs_an_endoscope_image() {
+    let mut bench = Fixture::new(FrameKind::View);
+    let tip_m = bench.subject().tip_in_flange_m();
+    bench.hold(&pivoting(tip_m, 0), 0.1);
+    assert_eq!(bench.wizard.may_go_on(&bench.binding()), Ok(()));
+    bench.rig.endoscope = None;
+    assert_eq!(bench.wizard.may_go_on(&bench.binding()), Err(text::wizards::NEEDS_CHECKS.get()), "nothing to look at");
+}
+
+#[test]
 fn a_tip_is_recorded_judged_written_into_the_rig_file_and_undone() {
     let mut bench = Fixture::new(FrameKind::Tip);
     let before = bench.subject();

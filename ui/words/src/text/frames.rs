@@ -164,6 +164,11 @@ pub const CHECK_ARM: Text = Text::of("Joints of the arm", "Gelenke des Arms");
 pub const CHECK_MARKER: Text = Text::of("Marker visible to the tracker", "Marker im Sichtfeld des Trackers");
 pub const CHECK_HANDLE: Text = Text::of("Position of the handle", "Position des Handgeräts");
 pub const CHECK_WRENCH: Text = Text::of("Force at the wrist", "Kraft am Handgelenk");
+pub const CHECK_IMAGE: Text = Text::of("Endoscope image", "Endoskopbild");
+pub const NO_IMAGE: Text = Text::of(
+    "this rig has no endoscope: enter the address of its image on the start page (F6)",
+    "dieser Aufbau hat kein Endoskop: auf der Startseite (F6) die Adresse seines Bildes eintragen",
+);
 pub const OPTIONS_TITLE: Text = Text::of("How to measure", "Messverfahren");
 pub const OPTIONS_HOVER: Text = Text::of("Leave this off unless you need it", "Nur bei Bedarf einschalten");
 pub const NEEDS_ARM: Text = Text::of("This rig has no arm with joints", "Dieser Aufbau hat keinen Arm mit Gelenken");

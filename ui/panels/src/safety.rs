@@ -118,7 +118,7 @@ fn gates_ui(ui: &mut Ui, live: &LiveState, side: Side) {
     for gate in &gates(live, side) {
         gate_ui(ui, live, side, gate);
     }
-    end_ui(ui, text::safety::HAND.get(), tick.map(|_| live.figures.rendered_n[side.index()]));
+    end_ui(ui, text::safety::HAND.get(), live.rendered_n(side));
     ui.add_space(6.0);
 }
 

@@ -120,10 +120,11 @@ fn reported_ui(ui: &Ui, live: &LiveState, place: Rect) {
 fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let ceiling_n = live.gate_settings().ceiling_n;
     let measured_n = live.figures.measured_n[side.index()];
-    let rendered_n = live.figures.rendered_n[side.index()];
+    let rendered_n = live.rendered_n(side);
     let response = ui.allocate_rect(place, Sense::hover());
     let name = text::common::hand(side_name(side));
-    let words = text::roles::hand(&name, &newtons_read(measured_n, 1), rendered_n, ceiling_n);
+    let [measured, rendered] = [measured_n, rendered_n].map(|force_n| newtons_read(force_n, 1));
+    let words = text::roles::hand(&name, &measured, &rendered, ceiling_n);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &words));
     response.on_hover_text(text::roles::BARS_HOVER);
     let painter = ui.painter_at(place);
@@ -133,9 +134,7 @@ fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let bars = Rect::from_min_max(inner.left_top() + vec2(190.0, 34.0), inner.max);
     let mark = bars.left() + bars.width() / BEYOND_CEILING as f32;
     for (i, (force_n, rendered, colour)) in
-        [(measured_n, false, theme::now().measured), (Some(rendered_n), true, theme::now().rendered)]
-            .into_iter()
-            .enumerate()
+        [(measured_n, false, theme::now().measured), (rendered_n, true, theme::now().rendered)].into_iter().enumerate()
     {
         let y = bars.top() + (0.25 + 0.5 * i as f32) * bars.height();
         force_sign(
@@ -157,4 +156,26 @@ fn hand_ui(ui: &mut Ui, live: &LiveState, side: Side, place: Rect) {
     let font = if acts { theme::strong(14.0) } else { theme::regular(14.0) };
     let font = fitting(&painter, &words, font, 2.0 * (inner.right() - mark));
     painter.text(at, Align2::CENTER_TOP, words, font, if acts { ink } else { theme::now().text_weak });
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    use super::*;
+
+    #[test]
+    fn the_forces_before_the_first_tick_are_unknown() {
+        let plan = nima_tests::plan("peg_transfer");
+        let live = LiveState::new(plan.rig, plan.scene);
+        let draw = move |ui: &mut Ui| {
+            if theme::is_applied(ui.ctx()) {
+                let place = ui.max_rect();
+                hand_ui(ui, &live, Side::Right, place);
+            }
+        };
+        let mut window = Harness::builder().with_size([500.0, 200.0]).build_ui(draw);
+        window.run_steps(3);
+        assert!(window.query_by_label_contains("measured unknown, rendered unknown").is_some());
+    }
 }

@@ -29,6 +29,11 @@ impl LiveState {
         }
     }
 
+    /// Returns the mean magnitude of the rendered force, N; `None` before the first tick of this side.
+    pub fn rendered_n(&self, side: Side) -> Option<f64> {
+        self.tick_of(side).map(|_| self.figures.rendered_n[side.index()])
+    }
+
     /// Returns the name of the lost device that caused the first fault; `None` for other faults.
     pub(super) fn fault_device(&self) -> Option<String> {
         let Some((_, Fault::DeviceLost { device, .. })) = self.first_fault else { return None };

@@ -125,16 +125,15 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
     let plate =
         Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), pos2(column(sides.len() - 1) + 12.0, corner.y + 72.0));
     painter.rect_filled(plate, theme::CORNER, theme::VEIL);
-    let rows = [
-        (text::common::MEASURED.get(), figures.measured_n, theme::DARK.measured),
-        (text::common::RENDERED.get(), figures.rendered_n.map(Some), theme::DARK.rendered),
-    ];
-    for (i, (name, forces_n, colour)) in rows.into_iter().enumerate() {
+    let rows =
+        [(text::common::MEASURED.get(), theme::DARK.measured), (text::common::RENDERED.get(), theme::DARK.rendered)];
+    for (i, (name, colour)) in rows.into_iter().enumerate() {
         let y = corner.y + 14.0 + 34.0 * i as f32;
         force_sign(painter, &theme::DARK, Rect::from_center_size(pos2(corner.x + 18.0, y), vec2(36.0, 16.0)), i == 1);
         painter.text(pos2(corner.x + 48.0, y), Align2::LEFT_CENTER, name, theme::regular(15.0), theme::DARK.text);
         for (k, side) in sides.iter().enumerate() {
-            let number = newtons(forces_n[side.index()], 2);
+            let force_n = if i == 1 { live.rendered_n(*side) } else { figures.measured_n[side.index()] };
+            let number = newtons(force_n, 2);
             painter.text(pos2(column(k), y), Align2::RIGHT_CENTER, number, theme::strong(25.0), colour);
         }
     }
@@ -145,8 +144,8 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &LiveState) {
     for (k, side) in sides.iter().enumerate() {
         let place = gauges.translate(vec2(38.0 * k as f32, 0.0));
         let measured_n = live.tick_of(*side).and_then(Tick::known_n).map(|force_n| force_n.norm());
-        let rendered_n = live.tick_of(*side).map_or(0.0, |tick| tick.rendering.rendered_n.norm());
-        gauge(painter, place, [measured_n, Some(rendered_n)], ceiling_n, live.is_limited(*side));
+        let rendered_n = live.tick_of(*side).map(|tick| tick.rendering.rendered_n.norm());
+        gauge(painter, place, [measured_n, rendered_n], ceiling_n, live.is_limited(*side));
         if both {
             let over = pos2(column(k), corner.y - 13.0);
             painter.text(over, Align2::RIGHT_CENTER, side_name(*side), theme::regular(15.0), theme::DARK.text_weak);
@@ -191,7 +190,7 @@ pub fn tip_bars(painter: &Painter, live: &LiveState, side: Side, tip: Pos2) {
     let outside = if side == Side::Right { away } else { -away };
     let rect = Rect::from_center_size(tip + vec2(outside, 0.0), BARS);
     let hand = side.index();
-    let forces_n = [live.figures.measured_n[hand], Some(live.figures.rendered_n[hand])];
+    let forces_n = [live.figures.measured_n[hand], live.rendered_n(side)];
     let ceiling_n = live.gate_settings().ceiling_n;
     let acts = live.is_limited(side);
     gauge(painter, rect, forces_n, ceiling_n, acts);

@@ -208,11 +208,11 @@ pub fn meaning_and_key(meaning: &str, key: &str) -> String {
     text_format!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
-/// `measured` has its unit, or is "unknown".
-pub fn hand(name: &str, measured: &str, rendered_n: f64, ceiling_n: f64) -> String {
+/// `measured` and `rendered` have their units, or are "unknown".
+pub fn hand(name: &str, measured: &str, rendered: &str, ceiling_n: f64) -> String {
     text_format!(
-        "{name}: measured {measured}, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N",
-        "{name}: gemessen {measured}, dargestellt {rendered_n:.1} N, Höchstkraft {ceiling_n:.0} N"
+        "{name}: measured {measured}, rendered {rendered}, ceiling {ceiling_n:.0} N",
+        "{name}: gemessen {measured}, dargestellt {rendered}, Höchstkraft {ceiling_n:.0} N"
     )
 }
 

@@ -10,7 +10,7 @@ use std::{
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use eframe::glow;
-use egui::{Align, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Stroke, StrokeKind, Ui};
+use egui::{Align, CentralPanel, Color32, Frame, Label, Layout, Margin, Panel, RichText, Stroke, StrokeKind, Ui};
 use nima_machine::config::RigConfig;
 use nima_panels::{
     roles::{Panels, Role, role_ui, switch_ui},
@@ -196,12 +196,9 @@ impl Monitor {
 
     /// Draws the reason why the display is out of date, otherwise the alarm at the rig.
     fn words_ui(&self, ui: &mut Ui, stale: Option<String>) {
-        let alarm = || {
-            let alarm = judge(&self.live.as_ref()?.signs(false, None)).into_iter().next()?;
-            Some(text::monitor::alarm(alarm.priority.word(), &alarm.cause))
-        };
-        let Some(words) = stale.or_else(alarm) else { return };
-        let label = RichText::new(&words).font(theme::strong(16.0)).color(theme::now().alarm_high);
+        let stale = stale.map(|words| (words, theme::now().alarm_high));
+        let Some((words, colour)) = stale.or_else(|| alarm_of(self.live.as_deref()?)) else { return };
+        let label = RichText::new(&words).font(theme::strong(16.0)).color(colour);
         ui.add(Label::new(label).truncate()).on_hover_text(words);
     }
 
@@ -282,4 +279,24 @@ pub fn open(rig: &str, options: MonitorOptions, begin: impl FnOnce(MonitorSender
     let ended = crate::console::open_window(&title, create);
     language::set(Language::English);
     ended
+}
+
+/// Returns the most urgent alarm at the rig, in the colour of its priority.
+fn alarm_of(live: &LiveState) -> Option<(String, Color32)> {
+    let alarm = judge(&live.signs(false, None)).into_iter().next()?;
+    Some((text::monitor::alarm(alarm.priority.word(), &alarm.cause), alarm.priority.ink()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_is_not_as_red_as_an_alarm() {
+        let plan = nima_tests::plan("peg_transfer");
+        let mut live = LiveState::of_elsewhere(plan.rig, plan.scene);
+        assert_eq!(alarm_of(&live), None);
+        live.is_unchecked = true;
+        assert_eq!(alarm_of(&live).map(|(_, colour)| colour), Some(theme::now().alarm_low));
+    }
 }

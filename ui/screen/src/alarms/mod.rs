@@ -33,6 +33,15 @@ pub enum AlarmPriority {
 }
 
 impl AlarmPriority {
+    /// Returns the colour of a text or a sign in the present palette.
+    pub fn ink(self) -> Color32 {
+        match self {
+            Self::High => theme::now().alarm_high,
+            Self::Medium => theme::now().alarm_medium,
+            Self::Low => theme::now().alarm_low,
+        }
+    }
+
     /// Returns the colour at this time on the dark background of alarms; flashing dims it but never hides it.
     /// Acknowledged alarms and those of low priority do not flash.
     pub fn colour(self, time_s: f64, flashes: bool) -> Color32 {

@@ -194,15 +194,16 @@ fn entry_ui(ui: &mut Ui, entry: &AlarmEntry) {
 
 /// Returns the symbol of an alarm: filled with the colour of its priority while its cause is present.
 fn sign_of(entry: &AlarmEntry) -> (Sign, Color32) {
-    let palette = theme::now();
     if entry.ended.is_some() {
-        return (Sign::Ring, palette.text_weak);
+        return (Sign::Ring, theme::now().text_weak);
     }
-    match entry.alarm.priority {
-        AlarmPriority::High => (Sign::Octagon, palette.alarm_high),
-        AlarmPriority::Medium => (Sign::Triangle, palette.alarm_medium),
-        AlarmPriority::Low => (Sign::Disc, palette.alarm_low),
-    }
+    let priority = entry.alarm.priority;
+    let what = match priority {
+        AlarmPriority::High => Sign::Octagon,
+        AlarmPriority::Medium => Sign::Triangle,
+        AlarmPriority::Low => Sign::Disc,
+    };
+    (what, priority.ink())
 }
 
 /// Returns an alarm as text for the clipboard.

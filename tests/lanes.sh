@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 
 # The product's crates, which depend on none of the others.
-ring1=(nima-testing nima-files nima-core nima-devices nima-recording nima-machine nima-session nima-training nima-endoscope nima-simulation)
+ring1=(nima-testing nima-files nima-charts nima-core nima-devices nima-recording nima-machine nima-session nima-training nima-endoscope nima-simulation)
 told=${CARGO_TARGET_DIR:-target}/lanes
 
 # Tests the product's crates only, for daily work.

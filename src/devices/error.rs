@@ -149,7 +149,8 @@ impl DeviceError {
             Self::WrongBaud { .. } => "Enter the device's speed as `baud` in the rig file.".to_owned(),
             Self::Silent { .. } => "Switch the device on, and check its cable and that it is configured to send.".to_owned(),
             Self::Late { .. } => {
-                "Connect the device without a busy network in between, and check that its program sends at once.".to_owned()
+                "Connect the device without a busy network in between, and check that its program sends at once; set the latency of a serial adapter to 1 ms."
+                    .to_owned()
             }
             Self::NobodySends { .. } => {
                 "Start the device program and configure it to send to this address; see docs/external-device.md.".to_owned()

@@ -130,6 +130,19 @@ fn what_it_must_not_know_is_found() {
     assert_eq!(Ring::of("src/extras/score"), score);
 }
 
+#[test]
+fn the_tests_for_daily_work_have_every_crate_of_the_product_in_src() {
+    let lanes = std::fs::read_to_string(root().join("tests/lanes.sh")).unwrap();
+    let listed = lanes.lines().find_map(|line| line.strip_prefix("ring1=(")?.strip_suffix(')')).unwrap();
+    let mut listed: Vec<&str> = listed.split(' ').collect();
+    listed.sort_unstable();
+    let crates = crates();
+    let is_of_product = |folder: &str| folder.starts_with("src/") && Ring::of(folder) == Ring::Product;
+    let wanted: Vec<&str> =
+        crates.iter().filter(|(_, (folder, _))| is_of_product(folder)).map(|(name, _)| &**name).collect();
+    assert_eq!(listed, wanted);
+}
+
 /// Crates whose code runs in a tick of the loop, or in a real-time thread of a device.
 const REAL_TIME: [&str; 4] = ["src/devices", "src/machine", "src/simulation", "src/extras/network"];
 

@@ -46,7 +46,8 @@ impl<F> DeviceProbe<F> {
         let other = |reason: &str| Err(DeviceError::Other { place: self.place.clone(), reason: reason.to_owned() });
         match health.standing {
             ConnectionState::Lost(Loss::Disconnected) => Err(DeviceError::Absent { place }),
-            ConnectionState::Lost(Loss::Silent) if health.out_of_order > health.readings => {
+            // Readings count until the first of them is too old, which takes about as long as the loss of a device.
+            ConnectionState::Lost(Loss::Silent) if 2 * health.out_of_order > health.readings => {
                 Err(DeviceError::Late { place })
             }
             ConnectionState::Lost(Loss::Silent) => Err(DeviceError::Silent { place }),

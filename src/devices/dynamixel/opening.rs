@@ -301,6 +301,20 @@ impl<'a, T: ByteStream, P: WaitClock> DynamixelSession<'a, T, P> {
         }
     }
 
+    /// Returns the shortest time in which a servo answers a ping, s: of several, because the computer may pause.
+    pub(super) fn answer_time_s(&mut self, id: u8) -> Result<Option<f64>, DeviceError> {
+        let mut shortest_s = None;
+        for _ in 0..TRIES {
+            let begin_s = self.pace.now_s();
+            self.send(id, &Instruction::Ping)?;
+            if self.receive(|packet| packet.id == id && packet.instruction == STATUS)?.is_some() {
+                let took_s = self.pace.now_s() - begin_s;
+                shortest_s = Some(shortest_s.map_or(took_s, |shortest_s: f64| shortest_s.min(took_s)));
+            }
+        }
+        Ok(shortest_s)
+    }
+
     fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), DeviceError> {
         // Pending bytes are from earlier instructions.
         let mut rest = [0; LONGEST];

@@ -119,7 +119,7 @@ const fn watchdog_s() -> f64 {
     0.1
 }
 
-const fn silence_s() -> f64 {
+pub(super) const fn silence_s() -> f64 {
     0.018
 }
 

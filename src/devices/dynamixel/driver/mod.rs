@@ -17,7 +17,7 @@ use super::{
     opening::{ANSWER_S, DynamixelSession, REST_READS, ServoProperties, SystemClock, WaitClock},
     protocol_1,
     reboots::Reboots,
-    settings::DynamixelSettings,
+    settings::{DynamixelSettings, silence_s},
     table::{BAUDS, EEPROM_BYTES, HardwareError, TEMPERATURE, ticks_from_rad},
 };
 use crate::{
@@ -172,7 +172,8 @@ pub fn open_with(settings: &DynamixelSettings, reboots: &Reboots) -> Result<Dyna
 /// Returns ids and model numbers of the servos that answer on a line; writes nothing.
 ///
 /// # Errors
-/// [`DeviceError`] if the port cannot be opened or closes during the search.
+/// [`DeviceError`] if the port cannot be opened or closes during the search, no servo answers, or the first one answers so
+/// late that a rig would count it as lost.
 pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, u16)>, DeviceError> {
     if !BAUDS.contains(&baud) {
         let allowed = format!("one of {BAUDS:?}");
@@ -182,8 +183,9 @@ pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, u16)>, DeviceError
     let mut pace = SystemClock(Instant::now());
     let mut session = DynamixelSession::new(&mut line, &mut pace, port);
     let servos = session.everybody()?;
-    if !servos.is_empty() {
-        return Ok(servos);
+    if let Some((id, _)) = servos.first() {
+        let is_late = session.answer_time_s(*id)?.is_some_and(|time_s| time_s > silence_s());
+        return if is_late { Err(DeviceError::Late { place: port.to_owned() }) } else { Ok(servos) };
     }
     let received = session.received_anything();
     Err(why_silent(&mut line, &mut pace, port, baud, received)?)

@@ -236,6 +236,7 @@ fn same_verdict(SweptKind { emulator, set, probe, rig }: &SweptKind, fault: Emul
 #[test]
 #[ignore = "real devices' times, half a minute: `./dev test` runs it alone"]
 fn a_probe_and_a_rig_come_to_the_same_verdict() {
+    crate::emulated::provide_handles();
     judged(|| {
         println!("| device | settings | fault | probe | rig |\n|---|---|---|---|---|");
         // A few at a time: more would delay one another.

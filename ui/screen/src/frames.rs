@@ -74,9 +74,6 @@ pub struct FrameFigures {
     pub work_ms: FrameSpread,
     /// The program's own part of this work: panels and plots, without triangles and driver, ms.
     pub layout_ms: FrameSpread,
-    /// Fraction of the window that was redrawn, 0 to 1, mean over the frames.
-    #[serde(rename = "drawn_share")]
-    pub drawn_fraction: f64,
     /// Processor time over the same period.
     pub processor: Processor,
     /// Load average of the computer (last minute) at the end.
@@ -96,7 +93,7 @@ pub struct FrameMeter {
     periods_ms: Vec<f64>,
     work_ms: Vec<f64>,
     layout_ms: Vec<f64>,
-    drawn: Vec<f64>,
+    images: usize,
     resident_mb: Vec<f64>,
 }
 
@@ -106,8 +103,6 @@ pub struct FrameMeasurement {
     pub period: Option<Duration>,
     /// Work of the previous frame, s.
     pub work_s: Option<f64>,
-    /// Fraction of the window that the previous frame redrew, 0 to 1.
-    pub drawn_fraction: f64,
     pub live: bool,
 }
 
@@ -124,7 +119,7 @@ impl FrameMeter {
             periods_ms: Vec::new(),
             work_ms: Vec::new(),
             layout_ms: Vec::new(),
-            drawn: Vec::new(),
+            images: 0,
             resident_mb: Vec::new(),
         }
     }
@@ -147,7 +142,7 @@ impl FrameMeter {
             }
             self.periods_ms.extend(image.period.map(|period| period.as_secs_f64() * 1e3));
             self.work_ms.extend(image.work_s.map(|work_s| work_s * 1e3));
-            self.drawn.push(image.drawn_fraction);
+            self.images += 1;
         }
         self.live_pending
     }
@@ -167,11 +162,10 @@ impl FrameMeter {
             renderer: renderer.to_owned(),
             first_live_image_s: self.first_live_s,
             seconds,
-            images: self.drawn.len(),
+            images: self.images,
             period_ms: FrameSpread::of(&self.periods_ms),
             work_ms: FrameSpread::of(&self.work_ms),
             layout_ms: FrameSpread::of(&self.layout_ms),
-            drawn_fraction: self.drawn.iter().sum::<f64>() / self.drawn.len().max(1) as f64,
             processor: Processor::between(&before, &threads_s(), seconds),
             load: first_number("/proc/loadavg").unwrap_or(0.0),
             resident_mb: self.resident_mb.iter().copied().chain([resident_mb()]).collect(),
@@ -271,7 +265,7 @@ mod tests {
     #[test]
     fn the_first_live_picture_is_told_when_it_stands() {
         let mut meter = FrameMeter::new(None);
-        let image = |live| FrameMeasurement { period: None, work_s: None, drawn_fraction: 1.0, live };
+        let image = |live| FrameMeasurement { period: None, work_s: None, live };
         assert!(!meter.begin(&image(false)));
         assert!(meter.begin(&image(true)), "its end is seen by the beginning of the next");
         assert!(meter.figures("").first_live_image_s.is_none());

@@ -6,7 +6,6 @@
 pub mod activity;
 pub mod alarms;
 pub mod background;
-pub mod canvas;
 pub mod compare_cost;
 pub mod deadlines;
 pub mod degree_record;
@@ -25,6 +24,7 @@ pub mod outbox;
 pub mod picking;
 pub mod readings;
 pub mod recording;
+pub mod renderer;
 pub mod rolling;
 pub mod run_log;
 pub mod scene3d;

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use crate::languages::pairs;
 
 /// Literals with text that are not part of the screen, by file: errors on the terminal (`app/pace.rs`, `screenshot.rs`), a
-/// driver's name (`canvas/surface.rs`), a type's (`link.rs`) and shader source (`scene3d/gl.rs`). Any other file has none.
+/// driver's name (`renderer.rs`), a type's (`link.rs`) and shader source (`scene3d/gl.rs`). Any other file has none.
 const LEFT: [(&str, usize); 5] = [
     ("src/console/app/frame_rate.rs", 1),
-    ("screen/src/canvas/surface.rs", 1),
+    ("screen/src/renderer.rs", 1),
     ("screen/src/link.rs", 1),
     ("screen/src/scene3d/gl.rs", 2),
     ("screen/src/screenshot.rs", 1),

@@ -91,8 +91,7 @@ impl ConsoleApp {
             self.live.frame(period.as_secs_f64(), work_s);
         }
         let Some(meter) = &mut self.meter else { return };
-        let drawn_fraction = self.surface.as_ref().map_or(1.0, |surface| surface.drawn_fraction());
-        if meter.begin(&FrameMeasurement { period, work_s, drawn_fraction, live: self.live.first_tick().is_some() }) {
+        if meter.begin(&FrameMeasurement { period, work_s, live: self.live.first_tick().is_some() }) {
             ctx.request_repaint();
         }
     }

@@ -19,7 +19,6 @@ mod windows;
 
 use std::{
     path::PathBuf,
-    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -30,13 +29,13 @@ use nima_panels::{rig_choice::RigChoice, roles::Panels, settings::SettingsStore,
 use nima_playback::list::SessionList;
 use nima_screen::{
     alarms::judge,
-    canvas::{Canvas, Surface, renderer_of},
     frames::FrameMeter,
     link::Reopen,
     live::LiveState,
     loop_connection::{LoopConnection, LoopMessage},
     objects,
     outbox::Outbox,
+    renderer::{is_software, renderer_of},
     run_log::RunLog,
     scene3d::SceneView,
     theme,
@@ -127,7 +126,6 @@ pub struct ConsoleApp {
     /// The last screen that the emulated rig's technician has read.
     read: Option<Screen>,
     options: ConsoleOptions,
-    surface: Option<Arc<Surface>>,
     renderer: String,
     meter: Option<FrameMeter>,
     opened: Instant,
@@ -148,15 +146,12 @@ impl ConsoleApp {
         extras::offer();
         theme::apply(&cc.egui_ctx);
         let now = Instant::now();
-        let surface = cc.gl.as_deref().and_then(Surface::where_it_pays);
-        if let Some(surface) = &surface {
-            cc.egui_ctx.add_plugin(Canvas::new(Arc::clone(surface), || theme::now().background));
-        }
+        let renderer = cc.gl.as_deref().map(renderer_of).unwrap_or_default();
         let active = ActiveCalibrations::load(None, &rig, &scene);
         let mut live = LiveState::new(rig, scene);
-        live.rough_edges = surface.is_some();
+        live.rough_edges = is_software(&renderer);
         Self {
-            renderer: cc.gl.as_deref().map(renderer_of).unwrap_or_default(),
+            renderer,
             meter: None,
             door: Some(door_of(handle, &cc.egui_ctx)),
             frozen: false,
@@ -182,7 +177,6 @@ impl ConsoleApp {
             watched: None,
             read: None,
             live,
-            surface,
             outbox: Outbox::default(),
             top_bar: TopBarState::default(),
             panels: Panels {
@@ -369,8 +363,5 @@ impl eframe::App for ConsoleApp {
         }
         self.break_off_run();
         self.write_figures();
-        if let (Some(gl), Some(surface)) = (gl, &self.surface) {
-            surface.destroy(gl);
-        }
     }
 }

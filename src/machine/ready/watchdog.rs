@@ -5,7 +5,7 @@ use super::{
     arms::Arms,
     item::{Item, PointProgress},
 };
-use crate::messages::{Command, LoopState, Refusal, Tick, Watchdog as Which};
+use crate::messages::{Command, ForceSource, LoopState, Refusal, Tick, Watchdog as Which};
 
 /// Maximum time until the fault, s on the loop's clock, beyond the link's own delay: the longest limit of a watchdog is
 /// 0.1 s, the rest is the command's path to the loop.
@@ -26,13 +26,33 @@ pub(super) struct ReadyWatchdog {
     /// Time of the last arm's fault, s on the loop's clock.
     bitten_s: Option<f64>,
     cause: Option<ReadyCause>,
+    /// Reason why an arm had no force to send during the test.
+    unknown: Option<ForceSource>,
 }
 
 impl ReadyWatchdog {
     pub(super) fn of(which: Which, subject: &CheckSubject) -> Self {
         let within_s = BITES_WITHIN_S + subject.rig.delay_s;
         let arms = Arms::of(subject);
-        Self { which, arms, within_s, sent: None, is_sent: false, refused: None, bitten_s: None, cause: None }
+        Self {
+            which,
+            arms,
+            within_s,
+            sent: None,
+            is_sent: false,
+            refused: None,
+            bitten_s: None,
+            cause: None,
+            unknown: None,
+        }
+    }
+
+    /// Returns why there was no fault. A link without a force to send is silent all the time, which is no fault.
+    fn no_bite(&self) -> ReadyCause {
+        match self.unknown {
+            Some(source) if self.which == Which::Link => ReadyCause::ForceUnknown(source),
+            _ => ReadyCause::NoBite(self.which),
+        }
     }
 }
 
@@ -41,6 +61,9 @@ impl Item for ReadyWatchdog {
         self.arms.tick(tick);
         if !self.is_sent {
             return;
+        }
+        if !tick.force.source.is_usable() {
+            self.unknown.get_or_insert(tick.force.source);
         }
         if tick.rendering.rendered_n.norm() > 0.0 {
             self.cause.get_or_insert(ReadyCause::Force { force_n: tick.rendering.rendered_n.norm() });
@@ -77,7 +100,7 @@ impl Item for ReadyWatchdog {
         let Some(bitten_s) = self.bitten_s else {
             let late = now_s - sent_s > GIVEN_UP_S + self.within_s;
             return if late {
-                PointProgress::Failed(ReadyCause::NoBite(self.which))
+                PointProgress::Failed(self.no_bite())
             } else {
                 PointProgress::Asking(PersonRequest::Nothing)
             };
@@ -93,7 +116,7 @@ impl Item for ReadyWatchdog {
     }
 
     fn late(&self) -> ReadyCause {
-        if self.bitten_s.is_some() { ReadyCause::NotReleased(None) } else { ReadyCause::NoBite(self.which) }
+        if self.bitten_s.is_some() { ReadyCause::NotReleased(None) } else { self.no_bite() }
     }
 
     fn command(&mut self) -> Option<Command> {

@@ -30,7 +30,7 @@ pub enum ReplayError {
     Missing { place: u64 },
     #[error("its journal has no beginning: the file was cut or damaged")]
     NoStart,
-    #[error("it has no journal; only sessions recorded with `nima run --record` can be replayed")]
+    #[error("it has no journal, so it cannot be replayed; of an excerpt, replay the session from which it was saved")]
     NoJournal,
     #[error(
         "calibration set {number} becomes active at tick {tick}, but the file does not contain it: the file was cut or damaged"

@@ -71,6 +71,11 @@ pub(super) fn run(arguments: &DevicesArguments) -> anyhow::Result<()> {
     if let Some(name) = &arguments.rig {
         let rig = RigConfig::load(name)?;
         if rig.devices.is_none() && !rig.has_real_hand() {
+            anyhow::ensure!(
+                rig.desk.is_none(),
+                "rig \"{}\" is simulated; test the devices on its desk with --probe spacemouse and --probe pedal",
+                rig.name
+            );
             bail!("rig \"{}\" is simulated: it has no devices", rig.name);
         }
         probes.extend(rig.probes());

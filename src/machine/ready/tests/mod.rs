@@ -10,8 +10,9 @@ use self::bench::{Fixture, Flaws, SIDE, state_of, subject};
 use super::{CheckSubject, Lacks, PersonRequest, ReadyCause, ReadyPoint, ReadySession, ReadyState};
 use crate::{
     config::RigConfig,
-    messages::{Command, Fault, LoopState, Refusal, Watchdog},
+    messages::{Command, Fault, ForceSource, LoopState, Refusal, Watchdog},
     rig::{SIDES, checkup::CheckupFinding},
+    teleop::{Calibrations, Loop},
 };
 
 /// Returns the only check that failed, and the reason.
@@ -212,6 +213,15 @@ fn a_watchdog_that_does_not_bite_fails() {
         failure_of(Flaws { supervised: false, ..Flaws::default() }),
         (ReadyPoint::Watchdog(Watchdog::Loop), cause)
     );
+}
+
+#[test]
+fn the_watchdog_of_the_link_cannot_be_tested_without_a_force() {
+    let mut bench = Fixture::new(subject(), Flaws::default());
+    bench.control = Loop::new(&subject().rig, &[Some(Calibrations::default()), None]).unwrap();
+    bench.run();
+    let cause = ReadyCause::ForceUnknown(ForceSource::Uncalibrated);
+    assert_eq!(state_of(&bench.session, ReadyPoint::Watchdog(Watchdog::Link)), ReadyState::Failed(cause));
 }
 
 #[test]

@@ -139,7 +139,7 @@ pub const END_TRIAL: (Text, Text) = (
 );
 pub const BEGIN_TRIAL: (Text, Text) = (
     Text::of("Restart the trial", "Versuch neu starten"),
-    Text::of("Palpation or wire task", "Palpation oder Drahtaufgabe"),
+    Text::of("Rings, palpation or wire task", "Ringe, Palpation oder Drahtaufgabe"),
 );
 pub const HIDE_FORCES: (Text, Text) = (
     Text::of("Show or hide forces in the endoscope image", "Kräfte im Endoskopbild ein- oder ausblenden"),

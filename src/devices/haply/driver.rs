@@ -272,8 +272,10 @@ impl Leader for HaplyDriver {
         let writer = Arc::clone(&self.writer);
         lever.attach(move || {
             wanted.store(false, Ordering::Release);
-            // The loop has stopped: its last force must not persist.
-            if let Some(writer) = &mut *writer.lock().unwrap_or_else(PoisonError::into_inner) {
+            // The loop has stopped: its last force must not persist. If the lock is held, the driver is being dropped, which
+            // also removes the force.
+            let Ok(mut writer) = writer.try_lock() else { return };
+            if let Some(writer) = &mut *writer {
                 writer.write_all(&force_request([0.0; 3])).ok();
             }
         });

@@ -26,8 +26,9 @@ pub(super) struct ReadyWatchdog {
     /// Time of the last arm's fault, s on the loop's clock.
     bitten_s: Option<f64>,
     cause: Option<ReadyCause>,
-    /// Reason why an arm had no force to send during the test.
+    /// Reason why an arm had no force to send during the test, and whether any had one.
     unknown: Option<ForceSource>,
+    has_force: bool,
 }
 
 impl ReadyWatchdog {
@@ -44,13 +45,14 @@ impl ReadyWatchdog {
             bitten_s: None,
             cause: None,
             unknown: None,
+            has_force: false,
         }
     }
 
     /// Returns why there was no fault. A link without a force to send is silent all the time, which is no fault.
     fn no_bite(&self) -> ReadyCause {
         match self.unknown {
-            Some(source) if self.which == Which::Link => ReadyCause::ForceUnknown(source),
+            Some(source) if self.which == Which::Link && !self.has_force => ReadyCause::ForceUnknown(source),
             _ => ReadyCause::NoBite(self.which),
         }
     }
@@ -62,7 +64,9 @@ impl Item for ReadyWatchdog {
         if !self.is_sent {
             return;
         }
-        if !tick.force.source.is_usable() {
+        if tick.force.source.is_usable() {
+            self.has_force = true;
+        } else {
             self.unknown.get_or_insert(tick.force.source);
         }
         if tick.rendering.rendered_n.norm() > 0.0 {

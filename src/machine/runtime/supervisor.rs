@@ -99,7 +99,8 @@ impl Supervisor {
                     *waits = !lever.pull();
                 }
                 if stalled && !pulled {
-                    pulse.pulled_ns.store(silent_ns, Ordering::Release);
+                    // A longer stall that the loop has not reported yet stays.
+                    pulse.pulled_ns.fetch_max(silent_ns, Ordering::AcqRel);
                 }
                 pulled = stalled;
             }
@@ -160,11 +161,14 @@ mod tests {
         let pulse = Arc::new(Pulse::default());
         let levers = [Lever::default(), Lever::default()];
         let counts: [Arc<AtomicU64>; 2] = std::array::from_fn(|_| Arc::default());
+        let is_held = Arc::new(AtomicBool::new(true));
         for (lever, count) in levers.iter().zip(&counts) {
             let count = Arc::clone(count);
+            let is_held = Arc::clone(&is_held);
             lever.attach(move || {
-                if count.fetch_add(1, Ordering::Relaxed) == 0 {
-                    std::thread::sleep(Duration::from_millis(200));
+                count.fetch_add(1, Ordering::Relaxed);
+                while is_held.load(Ordering::Relaxed) && std::thread::current().name() != Some("supervisor") {
+                    std::thread::sleep(Duration::from_millis(1));
                 }
             });
         }
@@ -178,7 +182,8 @@ mod tests {
             let _supervisor = Supervisor::start(Arc::clone(&pulse), levers.to_vec(), true).unwrap();
             std::thread::sleep(Duration::from_millis(100));
             assert_eq!([count(0), count(1)], [1, 1]);
-            std::thread::sleep(Duration::from_millis(300));
+            is_held.store(false, Ordering::Relaxed);
+            std::thread::sleep(Duration::from_millis(100));
             assert_eq!([count(0), count(1)], [2, 1]);
         });
     }

@@ -21,6 +21,8 @@ use codec::{BagField, BagNumber, BagValue, examples};
 
 /// Encoding of the messages of ROS 2.
 const CDR: &str = "cdr";
+/// First bytes of a frame of Zstandard (RFC 8878); those of a message are 0 and the byte order.
+const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// Maximum time between two messages of a topic over which is interpolated, s: three messages of a slow tracker.
 const GAP_S: f64 = 0.1;
 /// Maximum time by which a message may come after a later one, s: several publishers of a topic overtake each other by
@@ -48,6 +50,11 @@ pub enum BagError {
     NoQuantity { path: PathBuf, quantity: String },
     #[error("recording {path}: topic {topic} has a message that cannot be read; record it again", path = .path.display())]
     Message { path: PathBuf, topic: String },
+    #[error(
+        "recording {path}: each message of topic {topic} is compressed separately; convert it with `ros2 bag convert` without a compression_mode",
+        path = .path.display()
+    )]
+    Compressed { path: PathBuf, topic: String },
     #[error(
         "recording {path}: the time of topic {topic} steps back by {back_s:.3} s, {after_s:.3} s after its first message, as happens when the computer's clock is set; split the recording there and use the parts separately",
         path = .path.display()
@@ -159,6 +166,7 @@ fn file_of(path: &Path) -> Result<PathBuf, BagError> {
         None if with("db3") > 0 => {
             Err(refused("it is stored as SQLite (.db3): convert it with `ros2 bag convert` to the storage mcap"))
         }
+        None if with("zstd") > 0 => Err(refused("its file is compressed as a whole (.zstd): unpack it with `zstd -d`")),
         None => Err(refused("the folder has no .mcap file")),
     }
 }
@@ -205,6 +213,9 @@ fn read_series(
     for message in reader.messages(&[&channel.topic], 0..u64::MAX) {
         let message = message?;
         has_messages = true;
+        if message.data().starts_with(&ZSTD_MAGIC) {
+            return Err(BagError::Compressed { path: path.to_owned(), topic: topic() });
+        }
         let damaged = || BagError::Message { path: path.to_owned(), topic: topic() };
         let BagValue { stamp_ns, number } = field.read(message.data()).ok_or_else(damaged)?;
         let BagNumber::Given(value) = number else { continue };
@@ -363,6 +374,8 @@ mod tests {
         assert!(refused(&["fz=/ft/wrench.wrench.force.z"]).contains("--map z_m is missing"));
         let empty = tempfile::tempdir().unwrap();
         assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("no .mcap file"));
+        std::fs::write(empty.path().join("bag_0.mcap.zstd"), "").unwrap();
+        assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("zstd -d"));
         std::fs::write(empty.path().join("bag_0.db3"), "").unwrap();
         assert!(read(empty.path(), &mapping(&["x=a.b"])).unwrap_err().to_string().contains("ros2 bag convert"));
     }
@@ -414,6 +427,18 @@ mod tests {
         assert!(recording.samples.iter().all(|sample| sample.position_m.x.is_finite()));
         let none = read(&path, &mapping(&["z=/joint_states.position.knee", "fz=/ft/wrench.wrench.force.z"]));
         assert!(none.unwrap_err().to_string().contains("/joint_states.position.knee"));
+    }
+
+    #[test]
+    fn messages_that_are_compressed_one_by_one_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bag_0.mcap");
+        let mut writer = SessionWriter::create(&path, "ros2").unwrap();
+        let wrench = writer.channel("/ft/wrench", encoding("geometry_msgs/msg/WrenchStamped")).unwrap();
+        writer.message(wrench, 1, &[&ZSTD_MAGIC[..], &[0; 8]].concat()).unwrap();
+        writer.finish().unwrap();
+        let words = read_signals(&path, &mapping(&["fz=/ft/wrench.wrench.force.z"])).unwrap_err().to_string();
+        assert!(words.contains("compressed separately") && words.contains("ros2 bag convert"), "{words}");
     }
 
     #[test]

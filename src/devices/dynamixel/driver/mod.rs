@@ -184,11 +184,23 @@ pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, u16)>, DeviceError
     let mut session = DynamixelSession::new(&mut line, &mut pace, port);
     let servos = session.everybody()?;
     if let Some((id, _)) = servos.first() {
-        let is_late = session.answer_time_s(*id)?.is_some_and(|time_s| time_s > silence_s());
+        let max_s = silence_limit_s(silence_s(), byte_s(baud));
+        let is_late = session.answer_time_s(*id)?.is_some_and(|time_s| time_s > max_s);
         return if is_late { Err(DeviceError::Late { place: port.to_owned() }) } else { Ok(servos) };
     }
     let received = session.received_anything();
     Err(why_silent(&mut line, &mut pace, port, baud, received)?)
+}
+
+/// Returns the time of a byte on the line, s.
+fn byte_s(baud: u32) -> f64 {
+    10.0 / f64::from(baud)
+}
+
+/// Returns the time without a reading after which the servos count as lost, s: on a slow line three exchanges take longer
+/// than the setting.
+fn silence_limit_s(setting_s: f64, byte_s: f64) -> f64 {
+    setting_s.max(3.0 * WIRE_BYTES / (1.0 - 3.0 * SLACK) * byte_s)
 }
 
 /// Determines whether servos that do not answer use another line speed or are missing.
@@ -244,9 +256,8 @@ impl<T: ByteStream> DynamixelDriver<T> {
             let limits_ticks = servo.limits_ticks();
             ServoState { id: servo.id, current_unit_a, limits_ticks, condition: None, driven: false }
         });
-        let byte_s = 10.0 / f64::from(settings.baud);
-        // On a slow line three exchanges take longer.
-        let silence_s = settings.silence_s.max(3.0 * WIRE_BYTES / (1.0 - 3.0 * SLACK) * byte_s);
+        let byte_s = byte_s(settings.baud);
+        let silence_s = silence_limit_s(settings.silence_s, byte_s);
         Self {
             line,
             health: Health::opening(),

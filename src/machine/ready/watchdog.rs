@@ -49,7 +49,7 @@ impl ReadyWatchdog {
         }
     }
 
-    /// Returns why there was no fault. A link without a force to send is silent all the time, which is no fault.
+    /// Returns why there was no fault. A link without a force to send is always silent, so its silence raises none.
     fn no_bite(&self) -> ReadyCause {
         match self.unknown {
             Some(source) if self.which == Which::Link && !self.has_force => ReadyCause::ForceUnknown(source),
